@@ -11,11 +11,11 @@ use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use rodcal::beam::TipSolver;
-use rodcal::design::{Figures, Searched, Wish, search};
+use rodcal::design::{DesignSpace, Figures, Searched, search};
 use rodcal::rod::Rod;
 
 /// As `rods.c`: 20 tubes, 2 angles, 250 × 500 lengths; here of 4 tubes.
-const WISH: &str = "
+const SPACE: &str = "
 [geometry]
 l1_mm = { from = 100, to = 349, step = 1 }
 l2_mm = { from = 300, to = 799, step = 1 }
@@ -64,11 +64,12 @@ fn rods(c: &mut Criterion) {
     });
     group.finish();
 
-    let wish = Wish::from_toml("d.toml", WISH, &|name| Ok((name.to_owned(), TUBES.to_owned()))).unwrap();
+    let space =
+        DesignSpace::from_toml("d.toml", SPACE, &|name| Ok((name.to_owned(), TUBES.to_owned()))).unwrap();
     let mut group = c.benchmark_group("search");
     group.sample_size(10).measurement_time(Duration::from_secs(8));
-    group.throughput(Throughput::Elements(wish.combinations()));
-    group.bench_function("a million rods", |b| b.iter(|| search(&wish, Searched::All, &|_| {}).unwrap()));
+    group.throughput(Throughput::Elements(space.combinations()));
+    group.bench_function("a million rods", |b| b.iter(|| search(&space, Searched::All, &|_| {}).unwrap()));
     group.finish();
 }
 

@@ -23,19 +23,19 @@ use rodcal::rig::readings::Readings;
 use rodcal::robot::Robot;
 use rodcal::rod::Rod;
 use rodcal::units::UM;
-use rodcal_trial::rig::{Effect, Order};
+use rodcal_trial::rig::{CaseSpec, Effect};
 
 /// Friction and a soft sensor: two effects to be found, in every fold again.
 fn recording(trials: usize) -> (Rod, Readings) {
-    let order = Order { trials, axes: vec![1, 2], ..Order::default() };
+    let spec = CaseSpec { trials, axes: vec![1, 2], ..CaseSpec::default() };
     let effects = [
         Effect::Friction { axis: None, force: 1.0, presliding: 0.5 * UM, scatter: 0.1 },
         Effect::SensorScale { channel: 2, factor: 1.05 },
     ];
-    let made = order.made(&effects, 1);
+    let case = spec.simulated(&effects, 1);
     (
-        Rod::from_toml("rod.toml", &made.rod).unwrap(),
-        Readings::from_text("readings.csv", &made.readings).unwrap(),
+        Rod::from_toml("rod.toml", &case.rod).unwrap(),
+        Readings::from_text("readings.csv", &case.readings).unwrap(),
     )
 }
 

@@ -149,8 +149,8 @@ pub fn main(arguments: &[String]) {
             number + 1,
             true_index / UM,
             paper.c_rod,
-            told(runs.iter().map(|run| run.condition), 1),
-            told(runs.iter().map(|run| run.o1), 3),
+            mean_and_error(runs.iter().map(|run| run.condition), 1),
+            mean_and_error(runs.iter().map(|run| run.o1), 3),
             paper.oi
         );
     }
@@ -159,7 +159,9 @@ pub fn main(arguments: &[String]) {
     println!("| rod | gravity | contact force | both | left by base and tool | left by all parameters |");
     println!("|---|---|---|---|---|---|");
     for (rod, runs) in (1..).zip(&of_rod) {
-        let cell = |of: fn(&Field) -> f64, digits| told(runs.iter().map(|run| of(&run.field) / UM), digits);
+        let cell = |number: fn(&Field) -> f64, digits| {
+            mean_and_error(runs.iter().map(|run| number(&run.field) / UM), digits)
+        };
         println!(
             "| {rod}# | {} | {} | {} | {} | {} |",
             cell(|f| f.gravity, 1),
@@ -185,7 +187,7 @@ pub fn main(arguments: &[String]) {
 }
 
 /// Mean ± standard error.
-fn told(values: impl Iterator<Item = f64>, digits: usize) -> String {
+fn mean_and_error(values: impl Iterator<Item = f64>, digits: usize) -> String {
     let values: Vec<f64> = values.collect();
     let error = standard_deviation(&values).unwrap_or(0.0) / (values.len() as f64).sqrt();
     format!("{:.digits$} ± {error:.digits$}", mean(&values).unwrap())
@@ -198,11 +200,11 @@ fn simulated(runs: &[Run], variant: usize) -> Vec<String> {
             let all: Option<Vec<Summary>> = runs.iter().map(|run| run.judged[variant].errors[mode]).collect();
             let Some(all) = all else { return "–".into() };
             let worst: Vec<f64> = all.iter().map(|s| s.max / MM).collect();
-            format!("{} ({:.3})", told(all.iter().map(|s| s.mean / MM), 4), mean(&worst).unwrap())
+            format!("{} ({:.3})", mean_and_error(all.iter().map(|s| s.mean / MM), 4), mean(&worst).unwrap())
         })
         .collect();
     let of_run = |run: &Run, mode: usize| run.judged[variant].errors[mode].unwrap().mean / MM;
-    cells.push(told(runs.iter().map(|run| of_run(run, 0) - of_run(run, 3)), 4));
+    cells.push(mean_and_error(runs.iter().map(|run| of_run(run, 0) - of_run(run, 3)), 4));
     cells
 }
 

@@ -2,7 +2,7 @@
 //! designer asks for, and those of them that nobody can better in one respect without losing in
 //! another.
 //!
-//! - [`Wish`]: what may vary, what must hold, what counts; read from a design file
+//! - [`DesignSpace`]: what may vary, what must hold, what counts; read from a design file
 //! - [`Figure`]: the numbers that rods are judged by
 //! - [`search`]: all combinations, or a sample of them, to a Pareto [`Front`]
 //! - [`Intervals`]: how well a design's numbers are known, and which designs cannot be
@@ -30,9 +30,9 @@ mod refine;
 mod resume;
 mod rods_and_modes;
 mod search;
+mod space;
 mod study;
 mod values;
-mod wish;
 
 pub use catalogue::{BUILT_IN, Tube, built_in, built_in_materials};
 pub use figure::{Figure, Figures, Goal};
@@ -49,6 +49,9 @@ pub use poses::{
 pub use refine::{Better, Refined, refine, weights};
 pub use rods_and_modes::{RodForecast, rods_and_modes};
 pub use search::{Found, PART, Search, Searched, search};
+/// What `src/report` calls it still.
+#[doc(hidden)]
+pub use space::DesignSpace as Wish;
+pub use space::{DesignSpace, MOST_RODS};
 pub use study::{Base, KnownDesign, Shown, Study};
 pub use values::MOST_VALUES;
-pub use wish::{MOST_RODS, Wish};

@@ -5,5 +5,10 @@
 //! effects for each world (`rig/effects`, `calibration/effects`), and the model in which they act.
 
 pub mod calibration;
+mod diagnosed;
 mod law_formula;
+mod limitation;
 pub mod rig;
+
+pub use diagnosed::Diagnosed;
+pub use limitation::Limitation;

@@ -8,93 +8,68 @@
 //! ```text
 //! evidence + forward model → search (score) → selection → pruning → held out, sessions → findings
 //! ```
+//!
+//! | room | what it holds |
+//! |---|---|
+//! | `model` | what the engine is given: evidence, forward model, effects at their places |
+//! | `columns` | what each candidate does to the data, linearised, projected and kept for many fits |
+//! | `noise` | how the data scatter: weights, heavy tails, correlation, shared zeros, lack of fit |
+//! | `score` | how probable a hypothesis is, and its best values |
+//! | `search` | which terms, one after another and in pairs; what goes again; what is left |
+//! | `held_out` | what data that were not looked at say |
+//! | `diagnose`, `locate`, `sketch` | the whole way; where the residuals have a shape; the quick way |
+//! | `experiment_design` | which measurement would decide |
+//! | `result` | what is found, complete in itself |
+//! | `law` | what no effect explains, as a formula |
 
-pub(crate) mod background;
 mod columns;
-mod compared;
-mod correlated_noise;
-mod correlation;
-mod description;
 mod diagnose;
-mod diagnosis;
-mod effect;
-mod evidence;
 mod experiment_design;
-mod finding;
-mod fit;
-mod forward_model;
-mod gram_cache;
 mod held_out;
-mod hidden_in_correlation;
-mod hidden_in_groups;
-mod hypothesis;
-mod lack_of_fit;
 pub mod law;
-mod limit;
-mod linearised;
 mod locate;
-mod location;
-mod memory;
-mod misread;
-mod moments;
-
-mod nominal;
-mod pairs;
-mod part_products;
-mod parts;
-mod priors;
-mod proposal;
-mod pruning;
-mod quantity;
-mod ranking;
-mod scatter;
+mod model;
+mod noise;
+mod result;
 mod score;
 mod search;
-mod selection;
-mod sessions;
-mod shared_ratio;
 mod sketch;
-mod stored_column;
-mod table;
-mod untested;
-mod variable;
-mod whitening;
 
 #[cfg(test)]
 mod tests;
 
 #[cfg(test)]
 pub(crate) use self::{
-    linearised::Linearised,
-    pruning::infer,
-    selection::{DiscrepancyModel, Pairs},
+    columns::linearised::Linearised,
+    search::pruning::infer,
+    search::selection::{DiscrepancyModel, Pairs},
 };
-pub use compared::Compared;
-pub use correlated_noise::CorrelatedNoise;
-pub use description::Description;
+pub(crate) use columns::background::nominal_factors;
+pub use columns::stored_column::{DataParts, Pattern, StoredColumn, products};
 pub use diagnose::diagnose;
-pub use diagnosis::{Diagnosed, Diagnosis, Discrepancy, ShownBy};
-pub(crate) use effect::at;
-pub use effect::{Effect, Kind, Reported, UNKNOWN, WrittenTo};
-pub use evidence::{Covariate, Evidence, rms};
 pub use experiment_design::{ExperimentDesign, separates};
-pub use finding::{Estimate, Finding, FindingPart, Rival};
-pub use forward_model::{Candidate, DERIVATIVE_STEP, ForwardModel, Parameter, Step};
 pub use held_out::HeldOut;
-pub use hypothesis::{Hypothesis, Term};
-pub use lack_of_fit::LackOfFit;
-pub use limit::Limit;
+pub use held_out::compared::Compared;
+pub use held_out::sessions::LeftOutSession;
 pub use locate::Structure;
-pub use location::{Key, Location, Part, Run, RunName};
-pub use nominal::{NominalEstimate, NominalParameter};
-pub use proposal::{LoadPlan, Plan, PlannedPose, PosePlan, Proposal};
-pub use quantity::Quantity;
-pub use ranking::{Rank, Ranked, ranking};
-pub use scatter::{NoiseTest, Suspect};
-pub use selection::NAMED;
-pub use sessions::LeftOutSession;
+pub use model::description::Description;
+pub(crate) use model::effect::at;
+pub use model::effect::{Effect, Kind, Reported, UNKNOWN, WrittenTo};
+pub use model::evidence::{Covariate, Evidence, rms};
+pub use model::forward_model::{Candidate, DERIVATIVE_STEP, ForwardModel, Parameter, Step};
+pub use model::hypothesis::{Hypothesis, Term};
+pub use model::location::{Key, Location, Part, Run, RunName};
+pub use model::nominal::{NominalEstimate, NominalParameter};
+pub use model::quantity::Quantity;
+pub use model::variable::{JointVariable, Variable};
+pub use noise::correlated_noise::CorrelatedNoise;
+pub use noise::lack_of_fit::LackOfFit;
+pub use noise::scatter::{NoiseTest, Suspect};
+pub use noise::whitening::Whitening;
+pub use result::diagnosis::{Diagnosis, Discrepancy, ShownBy};
+pub use result::finding::{Estimate, Finding, FindingPart, Rival};
+pub use result::proposal::{LoadPlan, Plan, PlannedPose, PosePlan, Proposal};
+pub use result::ranking::{Rank, Ranked, ranking};
+pub use result::untested::{Absorbed, NotTestable};
+pub use search::selection::NAMED;
 pub use sketch::{Sketch, sketch};
-pub use stored_column::{DataParts, Pattern, StoredColumn, products};
-pub use untested::{Absorbed, NotTestable};
-pub use variable::{JointVariable, Variable};
-pub use whitening::Whitening;

@@ -6,8 +6,13 @@
 
 #![allow(clippy::unwrap_used)]
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use rodcal_trial::effect_name::EffectName;
+
+use crate::circles::tokens;
 
 /// From the ground up. A room is a top-level module with everything under it.
 const FLOORS: &[&[&str]] = &[
@@ -269,15 +274,19 @@ fn inference_knows_no_physics() {
     assert!(count > 10, "only {count} imports found: does the test still read them?");
 }
 
+/// Names of all effects that a diagnosis has.
+fn names_of_effects() -> Vec<&'static str> {
+    let rig = rodcal::diagnosis::rig::effects::registry::ALL.iter().map(|known| known.effect.name);
+    let calibration = rodcal::diagnosis::calibration::effects::registry::ALL.iter();
+    let names: Vec<&str> = rig.chain(calibration.map(|known| known.effect.name)).collect();
+    assert!(names.len() > 30);
+    names
+}
+
 /// Outside the registries an effect is a value: nothing compares its name.
 #[test]
 fn no_effect_is_compared_by_its_name() {
-    let names: Vec<&str> = rodcal::diagnosis::rig::effects::registry::ALL
-        .iter()
-        .map(|known| known.effect.name)
-        .chain(rodcal::diagnosis::calibration::effects::registry::ALL.iter().map(|known| known.effect.name))
-        .collect();
-    assert!(names.len() > 30);
+    let names = names_of_effects();
     let is_asked = |file: &str| file.contains("diagnosis") || file.contains("inference");
     for Source { file, text, .. } in files("src").into_iter().filter(|source| is_asked(&source.file)) {
         let code = of_the_program(&file, &text);
@@ -285,6 +294,48 @@ fn no_effect_is_compared_by_its_name() {
         for name in &names {
             let literal = format!("\"{name}\"");
             assert!(is_family || !code.contains(&literal), "{file} names {literal}");
+        }
+    }
+}
+
+/// What conceals effects has a registry of its own: it must not know the library.
+#[test]
+fn a_trial_names_effects_in_its_registry_alone() {
+    let mistakes = rodcal::diagnosis::rig::effects::registry::MISTAKES
+        .iter()
+        .chain(&rodcal::diagnosis::calibration::effects::registry::MISTAKES);
+    let library: Vec<&str> = mistakes.map(|mistake| mistake.name).chain(names_of_effects()).collect();
+    let own: Vec<&str> = EffectName::ALL.iter().map(EffectName::as_str).collect();
+    for name in own.iter().filter(|name| name.contains('_')) {
+        assert!(library.contains(name), "no diagnosis knows {name}");
+    }
+    let names: BTreeSet<&str> = library.iter().chain(&own).copied().collect();
+    for Source { file, text, .. } in files(TRIAL) {
+        let code = of_the_program(&file, &text);
+        for name in &names {
+            let literal = format!("\"{name}\"");
+            let is_registry = file.ends_with("/effect_name.rs");
+            assert!(is_registry || !code.contains(&literal), "{file} names {literal}");
+        }
+    }
+}
+
+/// Rooms in which a closure or a parameter may still be called `of`.
+const OF_EXEMPT: [&str; 3] = ["inference", "report", "diagnosis"];
+
+/// `of(x)` says nothing of what comes out: only what stands behind its type, as `Rate::of`, may be
+/// called so.
+#[test]
+fn nothing_is_called_of() {
+    for Source { file, room, text } in everything() {
+        if file.starts_with("src/") && OF_EXEMPT.contains(&room.as_str()) {
+            continue;
+        }
+        let tokens = tokens(&text);
+        let before = |k: usize| k.checked_sub(1).map_or("", |k| tokens[k].as_str());
+        for k in (0..tokens.len()).filter(|&k| tokens[k] == "of") {
+            let near = tokens[k.saturating_sub(5)..tokens.len().min(k + 5)].join(" ");
+            assert!(["::", ".", "fn"].contains(&before(k)), "{file}: {near}");
         }
     }
 }

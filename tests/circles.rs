@@ -259,7 +259,7 @@ fn leaves(tokens: &[String]) -> Vec<(String, Vec<String>)> {
 }
 
 /// Words, `::` and single signs; no comments, no texts.
-fn tokens(text: &str) -> Vec<String> {
+pub(crate) fn tokens(text: &str) -> Vec<String> {
     let chars: Vec<char> = text.chars().collect();
     let mut tokens = Vec::new();
     let mut at = 0;

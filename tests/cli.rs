@@ -124,10 +124,10 @@ fn list(directory: &Path, prefix: &str, found: &mut BTreeMap<String, Vec<u8>>) {
 
 /// What the program answered.
 #[derive(Debug, Clone, PartialEq)]
-struct Answer {
+pub(crate) struct Answer {
     line: String,
     status: Option<i32>,
-    stdout: String,
+    pub(crate) stdout: String,
     stderr: String,
 }
 
@@ -157,14 +157,14 @@ impl Answer {
 }
 
 /// A command on the project's data whose answer several tests read: it runs once.
-struct Ran {
-    answer: Answer,
+pub(crate) struct Ran {
+    pub(crate) answer: Answer,
     /// The files before and after.
     before: BTreeMap<String, Vec<u8>>,
     after: BTreeMap<String, Vec<u8>>,
 }
 
-fn ran(line: &str) -> &'static Ran {
+pub(crate) fn ran(line: &str) -> &'static Ran {
     static RUNS: LazyLock<Mutex<BTreeMap<String, &'static OnceLock<Ran>>>> = LazyLock::new(Mutex::default);
     let run: &'static OnceLock<Ran> = RUNS
         .lock()

@@ -19,7 +19,7 @@ use rodcal::diagnosis::rig::{RigDiagnosis, diagnose};
 use rodcal::report;
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
-use rodcal_trial::rig::{Effect, Made, Order};
+use rodcal_trial::rig::{CaseSpec, Effect, SimulatedCase};
 use serde_json::Value;
 
 /// A diagnosis with its JSON.
@@ -37,13 +37,13 @@ impl Answer {
         Answer { found, json }
     }
 
-    fn of_made(made: &Made) -> Answer {
-        Answer::of(Some(&made.rod), &made.readings)
+    fn of_case(case: &SimulatedCase) -> Answer {
+        Answer::of(Some(&case.rod), &case.readings)
     }
 
-    /// Of `order` with `effects`.
-    fn made(order: &Order, effects: &[Effect], seed: u64) -> Answer {
-        Answer::of_made(&order.made(effects, seed))
+    /// Of `spec` with `effects`.
+    fn simulated(spec: &CaseSpec, effects: &[Effect], seed: u64) -> Answer {
+        Answer::of_case(&spec.simulated(effects, seed))
     }
 
     fn findings(&self) -> &[Value] {

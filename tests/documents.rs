@@ -1,9 +1,14 @@
 //! The documents say what the program knows: tables of effects come from the registries.
 
+use std::collections::BTreeSet;
 use std::path::Path;
+use std::process::Command;
 
 use rodcal::diagnosis::{calibration, rig};
 use rodcal::inference::Effect;
+use serde_json::Value;
+
+use crate::cli::ran;
 
 fn document(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
@@ -125,4 +130,142 @@ fn what_is_linked_exists() {
         }
     }
     assert!(count > 100, "{count}");
+}
+
+/// Words of the output that need no glossary.
+const PLAIN: &str = "after against aligned alike along aluminium and asked because before better \
+     bettered beyond block breaks by calibrated carbon change chosen column compensated coordinate \
+     copied corrected criterion density diameter differ distrusted do drawing estimated evaluated \
+     everything expected explains first found from gamma geometry given headline hidden in index \
+     infeasible inner is judged key largest least left locate looked material maximise meaning min \
+     minimise minute more name not now of other outer part passes pipe proven quadratic radius \
+     ranking ratio reading reason recorded refined refused relax rotation sensitivities shared shown \
+     source supported swing table term testable the to tube unseen value wait wanted warning what \
+     where with word wrapped";
+/// Units, and what is counted in them.
+const UNITS: &str = "deg gpa hz kg mm mpa mrad nm percent rad rpy um urad xyz";
+
+/// Words of two letters and more, without the s of a plural.
+fn words(text: &str) -> BTreeSet<String> {
+    let all = text.split(|c: char| !c.is_ascii_alphabetic()).filter(|word| word.len() > 1);
+    let singular = |word: &str| word.strip_suffix('s').filter(|one| one.len() > 2).unwrap_or(word).to_owned();
+    all.map(|word| singular(&word.to_lowercase())).collect()
+}
+
+/// The lines above the rule below a table's header, in every table of a text.
+fn headers(text: &str) -> String {
+    let lines: Vec<&str> = text.lines().collect();
+    let is_rule = |line: &str| line.contains("─  ─") && line.chars().all(|c| c == '─' || c == ' ');
+    let above = |rule: usize| {
+        let start =
+            lines[..rule].iter().rposition(|line| line.trim().is_empty()).map_or(0, |blank| blank + 1);
+        lines[start..rule].join("\n")
+    };
+    let rules = (0..lines.len()).filter(|&k| is_rule(lines[k]));
+    rules.map(|rule| above(rule) + "\n").collect()
+}
+
+/// The names of all numbers of an answer, however deep.
+fn keys(value: &Value, all: &mut String) {
+    match value {
+        Value::Object(fields) => fields.iter().for_each(|(key, inner)| {
+            *all += &format!("{key}\n");
+            keys(inner, all);
+        }),
+        Value::Array(items) => items.iter().for_each(|item| keys(item, all)),
+        _ => {}
+    }
+}
+
+#[test]
+fn the_glossary_has_every_term_of_the_output() {
+    let page = document("docs/glossary.md");
+    let rows = || page.lines().filter_map(|line| line.strip_prefix("| ")?.split(" | ").next());
+    let once: BTreeSet<&str> = rows().filter(|term| *term != "term").collect();
+    assert_eq!(once.len(), rows().filter(|term| *term != "term").count(), "a term stands twice");
+    let mut known = words(&once.into_iter().collect::<Vec<_>>().join(" "));
+    known.extend(words(PLAIN));
+    known.extend(words(UNITS));
+    let mut said = String::new();
+    let mistakes = rig::effects::registry::MISTAKES.iter().chain(&calibration::effects::registry::MISTAKES);
+    for effect in effects_of_a_rig().iter().chain(&effects_of_a_calibration()).chain(mistakes) {
+        said += &format!("{}\n", effect.name);
+    }
+    for line in [
+        "diagnose rig rods/5.toml stiffness_data/5.csv",
+        "diagnose calibration campaigns/tx90-5/campaign.toml",
+        "calibrate campaigns/tx90-5/campaign.toml --mode fea --robust huber --folds 5",
+        "rig fit rods/5.toml stiffness_data/5.csv",
+        "design rod examples/design.toml",
+        "design rig rods/2.toml --between joint_compliance,root_compliance",
+        "design poses campaigns/tx90-5/campaign.toml --count 60",
+    ] {
+        said += &headers(&ran(line).answer.stdout);
+        let answer = &ran(&format!("{line} --json")).answer;
+        keys(&serde_json::from_str(&answer.stdout).unwrap_or_else(|e| panic!("{line}: {e}")), &mut said);
+    }
+    let snapshots = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots");
+    for entry in std::fs::read_dir(snapshots).unwrap() {
+        said += &headers(&std::fs::read_to_string(entry.unwrap().path()).unwrap());
+    }
+    let said = words(&said);
+    let unknown: Vec<&String> = said.difference(&known).collect();
+    assert!(said.len() > 200 && unknown.is_empty(), "docs/glossary.md has no row for {unknown:?}");
+}
+
+#[test]
+fn headers_are_the_lines_above_a_rule() {
+    assert_eq!(headers("Words\n\na   b\n    mm\n──  ──\n1    2\n"), "a   b\n    mm\n");
+}
+
+/// What stands for a commit in a text: seven hexadecimal digits or more, letters among them.
+fn commits(text: &str) -> Vec<&str> {
+    let words = text.split(|c: char| !(c.is_alphanumeric() || ".-".contains(c)));
+    let is_hash = |word: &&str| {
+        (7..=40).contains(&word.len())
+            && word.bytes().all(|b| b.is_ascii_digit() || (b'a'..=b'f').contains(&b))
+            && word.bytes().any(|b| b.is_ascii_digit())
+            && word.bytes().any(|b| b.is_ascii_alphabetic())
+    };
+    words.map(|word| word.trim_matches('.')).filter(is_hash).collect()
+}
+
+#[test]
+fn commits_are_told_from_numbers_and_seeds() {
+    let text = "Of commit 1dafeb0, seed 0xea0bb410b770, J is 4.573634e-5 (`9b67b6f`). Seed 551075276.";
+    assert_eq!(commits(text), ["1dafeb0", "9b67b6f"]);
+}
+
+/// Nothing is compared where there is no history: in a package, or in a shallow clone.
+#[test]
+fn every_commit_that_is_quoted_exists() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let git = |arguments: &[&str]| Command::new("git").arg("-C").arg(root).args(arguments).output().ok();
+    let is_shallow = git(&["rev-parse", "--is-shallow-repository"]);
+    if is_shallow.is_none_or(|answer| answer.stdout != b"false\n") || !root.join(".git").exists() {
+        return;
+    }
+    let mut pages: Vec<String> =
+        ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(str::to_owned).to_vec();
+    let mut folders = vec!["docs".to_owned(), "reports".to_owned(), "tests/references".to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(root.join(&folder)).unwrap().map(Result::unwrap) {
+            let name = format!("{folder}/{}", entry.file_name().to_string_lossy());
+            match entry.path().is_dir() {
+                true => folders.push(name),
+                false if name.ends_with(".md") => pages.push(name),
+                false => {}
+            }
+        }
+    }
+    let mut count = 0;
+    for page in pages {
+        let text = document(&page);
+        for commit in commits(&text) {
+            count += 1;
+            let answer = git(&["merge-base", "--is-ancestor", commit, "HEAD"]).unwrap();
+            assert!(answer.status.success(), "{page}: {commit} is no commit that this one rests on");
+        }
+    }
+    assert!(count > 5, "only {count} commits found: does the test still read them?");
 }

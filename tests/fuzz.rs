@@ -17,7 +17,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
 use rodcal::calibration::Campaign;
-use rodcal::design::Wish;
+use rodcal::design::DesignSpace;
 use rodcal::diagnosis::rig::OwnEffect;
 use rodcal::files::text_of_bytes;
 use rodcal::report::runs::Run;
@@ -72,11 +72,11 @@ const READERS: [Reader; 11] = [
     }),
     ("design", |bytes| {
         let open = |name: &str| Ok((name.to_owned(), corpus::TUBES.to_owned()));
-        Wish::from_toml("f", &text_of_bytes("f", bytes)?, &open).map(drop)
+        DesignSpace::from_toml("f", &text_of_bytes("f", bytes)?, &open).map(drop)
     }),
     ("catalogue", |bytes| {
         let text = text_of_bytes("f", bytes)?;
-        Wish::from_toml("d", corpus::DESIGN, &|_| Ok(("f".to_owned(), text.clone()))).map(drop)
+        DesignSpace::from_toml("d", corpus::DESIGN, &|_| Ok(("f".to_owned(), text.clone()))).map(drop)
     }),
     ("effects", |bytes| OwnEffect::from_toml("f", &text_of_bytes("f", bytes)?).map(drop)),
     ("poses", |bytes| {

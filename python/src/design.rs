@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use pyo3::prelude::*;
 use rodcal::answer;
 use rodcal::design::{
-    Budget, PoseCriterion, PoseLimits, PoseStep, Search, Source, TableHeight, Wanted, Where, Wish,
+    Budget, DesignSpace, PoseCriterion, PoseLimits, PoseStep, Search, Source, TableHeight, Wanted, Where,
 };
 use rodcal::diagnosis::rig::planned::Bench;
 use rodcal::files;
@@ -28,37 +28,37 @@ pub enum Design {
 }
 
 impl Design {
-    pub fn wish(self, py: Python<'_>) -> PyResult<Wish> {
-        self.read(py).map(|(wish, ..)| wish)
+    pub fn space(self, py: Python<'_>) -> PyResult<DesignSpace> {
+        self.read(py).map(|(space, ..)| space)
     }
 
     /// What is searched, with the text that says so and that of the catalogue that it names.
-    pub fn read(self, py: Python<'_>) -> PyResult<(Wish, String, Option<String>)> {
+    pub fn read(self, py: Python<'_>) -> PyResult<(DesignSpace, String, Option<String>)> {
         let tubes = RefCell::new(None);
         let opened = |path: PathBuf| -> rodcal::Result<(String, String)> {
             let text = files::read_text(&path)?;
             *tubes.borrow_mut() = Some(text.clone());
             Ok((path.display().to_string(), text))
         };
-        let (text, wish) = match self {
+        let (text, space) = match self {
             Design::File(path) => {
                 let folder = path.parent().unwrap_or(Path::new(""));
                 let text = files::read_text(&path).or_raise(py)?;
                 let file = path.display().to_string();
-                let wish = Wish::from_toml(&file, &text, &|name| opened(folder.join(name)));
-                (text, wish)
+                let space = DesignSpace::from_toml(&file, &text, &|name| opened(folder.join(name)));
+                (text, space)
             }
             Design::Text(text, Some(known)) => {
                 let named = |_: &str| Ok(("<catalogue>".to_owned(), known.clone()));
-                let wish = Wish::from_toml("<design>", &text, &named).or_raise(py)?;
-                return Ok((wish, text, Some(known)));
+                let space = DesignSpace::from_toml("<design>", &text, &named).or_raise(py)?;
+                return Ok((space, text, Some(known)));
             }
             Design::Text(text, None) => {
-                let wish = Wish::from_toml("<design>", &text, &|name| opened(name.into()));
-                (text, wish)
+                let space = DesignSpace::from_toml("<design>", &text, &|name| opened(name.into()));
+                (text, space)
             }
         };
-        Ok((wish.or_raise(py)?, text, tubes.into_inner()))
+        Ok((space.or_raise(py)?, text, tubes.into_inner()))
     }
 }
 
@@ -77,7 +77,7 @@ pub fn design_rod(
     parts: Option<&Bound<'_, PyAny>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Answer> {
-    let wish = design.wish(py)?;
+    let space = design.space(py)?;
     let count = count.map(|count| within(py, "count", count, 1, 20_000)).transpose()?;
     let asked = answer::DesignRod {
         base: base.map(|rod| rod.get().rod.clone()),
@@ -86,10 +86,10 @@ pub fn design_rod(
         campaign: campaign.map(|campaign| (&campaign.get().campaign, count)),
         seed,
     };
-    let searched = asked.searched(&wish, samples).or_raise(py)?;
-    let mut search = Search::new(&wish, searched).or_raise(py)?;
+    let searched = asked.searched(&space, samples).or_raise(py)?;
+    let mut search = Search::new(&space, searched).or_raise(py)?;
     if let Some(parts) = parts {
-        take_in(py, &mut search, searched, &wish, parts)?;
+        take_in(py, &mut search, searched, &space, parts)?;
     }
     let counted = Progress::of(search.count());
     run(py, progress, counted, |progress| {
@@ -97,7 +97,7 @@ pub fn design_rod(
             search.go_on(&|more| progress.more(more))?;
         }
         let found = search.found()?;
-        answer::design_rod(wish.clone(), found, &asked)
+        answer::design_rod(space.clone(), found, &asked)
     })
     .map(Answer)
 }

@@ -4,7 +4,7 @@
 use pyo3::prelude::*;
 use rodcal::answer::DesignRod;
 use rodcal::calibration::{self, Compensation, Draws, Options, default_mode, folds_of, predict_held_out};
-use rodcal::design::{PART, Search, Searched, Wish};
+use rodcal::design::{DesignSpace, PART, Search, Searched};
 
 use crate::arguments::within;
 use crate::calibration::{compared, mode_named, robust_named};
@@ -14,8 +14,8 @@ use crate::inputs::Campaign;
 use crate::work::{Progress, run};
 
 /// Which rods a search looks at.
-fn searched(py: Python<'_>, wish: &Wish, samples: Option<u64>, seed: u64) -> PyResult<Searched> {
-    DesignRod { seed, ..DesignRod::default() }.searched(wish, samples).or_raise(py)
+fn searched(py: Python<'_>, space: &DesignSpace, samples: Option<u64>, seed: u64) -> PyResult<Searched> {
+    DesignRod { seed, ..DesignRod::default() }.searched(space, samples).or_raise(py)
 }
 
 /// What other machines need of a design: its text and that of its catalogue; how many rods a search
@@ -27,9 +27,9 @@ pub fn design_parts(
     samples: Option<u64>,
     seed: u64,
 ) -> PyResult<(String, Option<String>, u64, u64)> {
-    let (wish, text, tubes) = design.read(py)?;
-    let searched = searched(py, &wish, samples, seed)?;
-    let count = Search::new(&wish, searched).or_raise(py)?.count();
+    let (space, text, tubes) = design.read(py)?;
+    let searched = searched(py, &space, samples, seed)?;
+    let count = Search::new(&space, searched).or_raise(py)?.count();
     Ok((text, tubes, count, PART))
 }
 
@@ -43,10 +43,10 @@ pub fn design_part(
     first: u64,
     last: u64,
 ) -> PyResult<String> {
-    let wish = design.wish(py)?;
-    let searched = searched(py, &wish, samples, seed)?;
+    let space = design.space(py)?;
+    let searched = searched(py, &space, samples, seed)?;
     run(py, None, Progress::default(), |_| {
-        let mut search = Search::part(&wish, searched, first..last)?;
+        let mut search = Search::part(&space, searched, first..last)?;
         while !search.is_done() {
             search.go_on(&|_| {})?;
         }
@@ -59,13 +59,13 @@ pub fn take_in<'w>(
     py: Python<'_>,
     search: &mut Search<'w>,
     searched: Searched,
-    wish: &'w Wish,
+    space: &'w DesignSpace,
     parts: &Bound<'_, PyAny>,
 ) -> PyResult<()> {
     for part in parts.try_iter()? {
         let (first, last, text): (u64, u64, String) = part?.extract()?;
         let merged = py.detach(|| {
-            let part = Search::part_from_text(wish, searched, first..last, "<part>", &text)?;
+            let part = Search::part_from_text(space, searched, first..last, "<part>", &text)?;
             search.take_in(part)
         });
         merged.or_raise(py)?;

@@ -3,7 +3,8 @@
 use super::{Answer, provenance};
 use crate::calibration::Campaign;
 use crate::design::{
-    Budget, Found, MOST_RODS, PoseStep, PoseStudy, Searched, Source, Study, Wanted, Where, Wish, for_robot,
+    Budget, DesignSpace, Found, MOST_RODS, PoseStep, PoseStudy, Searched, Source, Study, Wanted, Where,
+    for_robot,
 };
 use crate::diagnosis::rig::planned::{Bench, effect_named, effect_names, plan, plan_ratio};
 use crate::error::{Error, Result};
@@ -28,12 +29,12 @@ pub struct DesignRod<'c> {
 }
 
 impl DesignRod<'_> {
-    /// Which rods of `wish` are looked at; `samples` of them, or all.
+    /// Which rods of `space` are looked at; `samples` of them, or all.
     ///
     /// # Errors
     /// [`Error::Argument`] for all of more rods than a search takes.
-    pub fn searched(&self, wish: &Wish, samples: Option<u64>) -> Result<Searched> {
-        match (samples, wish.is_too_much()) {
+    pub fn searched(&self, space: &DesignSpace, samples: Option<u64>) -> Result<Searched> {
+        match (samples, space.is_too_much()) {
             (Some(samples), _) => Ok(Searched::Samples(samples, self.seed)),
             (None, None) => Ok(Searched::All),
             (None, Some(much)) => Err(Error::Argument {
@@ -49,8 +50,8 @@ impl DesignRod<'_> {
 ///
 /// # Errors
 /// As [`Study::of_found`], [`Study::with_refined`] and [`for_robot`].
-pub fn design_rod(wish: Wish, found: Found, asked: &DesignRod<'_>) -> Result<Answer> {
-    let study = Study::of_found(wish, found, asked.base.clone())?;
+pub fn design_rod(space: DesignSpace, found: Found, asked: &DesignRod<'_>) -> Result<Answer> {
+    let study = Study::of_found(space, found, asked.base.clone())?;
     let study = match asked.refine {
         Some(number) => study.with_refined(number.saturating_sub(1), asked.refine_goal.as_deref())?,
         None => study,

@@ -64,7 +64,7 @@ impl<T: Number> TipSolver<T> {
             let factor = rod.bend_flexibility.factor(&rod.bend.section, rod.bend_radius);
             let (profile, key) = (physics.profile(&rod.bend, factor), [rod.bend_radius, rod.turn()]);
             let shape = match &self.arc {
-                Some((of, known, shape)) if *of == profile && *known == key => *shape,
+                Some((own, known, shape)) if *own == profile && *known == key => *shape,
                 _ => Shape::arc(&profile, key[0], key[1]),
             };
             self.arc = Some((profile, key, shape));

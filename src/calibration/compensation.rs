@@ -167,7 +167,7 @@ impl Compensation {
                 }
             }
         }
-        let farthest = |(law, x): (&RodLaw, f64)| format!("{}, at {}", law.words(), significant(x, 3));
+        let farthest = |(law, x): (&RodLaw, f64)| format!("{}, at {}", law, significant(x, 3));
         Some((most, beyond.into_iter().map(farthest).collect()))
     }
 

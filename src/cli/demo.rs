@@ -164,14 +164,14 @@ fn shown(sections: Vec<Section>, pictures: &[&str]) -> Vec<Section> {
 
 /// A diagnosis as a part of a page: its answer, its first cards, what it looks like before and
 /// after.
-fn add(page: &mut Report, of: &str, part: Report) {
+fn add(page: &mut Report, heading: &str, part: Report) {
     let gap = if page.headline.is_empty() { "" } else { " " };
-    page.headline += &format!("{gap}{of}: {}", part.headline);
-    let labelled = |card: Card| Card { label: format!("{of}: {}", card.label.to_lowercase()), ..card };
+    page.headline += &format!("{gap}{heading}: {}", part.headline);
+    let labelled = |card: Card| Card { label: format!("{heading}: {}", card.label.to_lowercase()), ..card };
     page.cards.extend(part.cards.into_iter().take(3).map(labelled));
     let sections = shown(part.sections, &["before-after", "ranking"]);
     let blocks = sections.into_iter().flat_map(|section| section.blocks).collect();
-    page.sections.push(Section::new(of, blocks));
+    page.sections.push(Section::new(heading, blocks));
 }
 
 /// The report of a diagnosis.

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand, ValueEnum};
 use rodcal::calibration::Campaign;
-use rodcal::design::{Found, Search, Searched, Wish};
+use rodcal::design::{DesignSpace, Found, Search, Searched};
 use rodcal::files::{self, Existing};
 use rodcal::rod::Rod;
 use rodcal::{Result, answer};
@@ -111,16 +111,16 @@ const KEPT_EVERY: Duration = Duration::from_secs(5);
 
 impl DesignRod {
     /// Looks at all rods, from where the kept search stopped.
-    fn search(&self, wish: &Wish, searched: Searched, progress: &Progress) -> Result<Found> {
+    fn search(&self, space: &DesignSpace, searched: Searched, progress: &Progress) -> Result<Found> {
         let kept = self.resume.as_deref();
         let found = kept.filter(|path| path.exists());
         let mut is_own = found.is_some();
         let mut search = match found {
             Some(path) => {
                 let text = files::read_text(path)?;
-                Search::from_text(wish, searched, &path.display().to_string(), &text)?
+                Search::from_text(space, searched, &path.display().to_string(), &text)?
             }
-            None => Search::new(wish, searched)?,
+            None => Search::new(space, searched)?,
         };
         progress.more(search.done());
         let mut last: Option<Instant> = None;
@@ -139,9 +139,9 @@ impl DesignRod {
     }
 
     fn run(&self) -> Result<Outcome> {
-        let wish = Wish::read(&self.design)?;
+        let space = DesignSpace::read(&self.design)?;
         let base = self.base.as_deref().map(Rod::read).transpose()?;
-        let all = wish.combinations();
+        let all = space.combinations();
         let campaign = self.campaign.as_deref().map(Campaign::read_plan).transpose()?;
         let asked = answer::DesignRod {
             base,
@@ -150,12 +150,12 @@ impl DesignRod {
             campaign: campaign.as_ref().map(|campaign| (campaign, self.count.map(|count| count as usize))),
             seed: self.seed,
         };
-        let searched = asked.searched(&wish, self.samples)?;
+        let searched = asked.searched(&space, self.samples)?;
         let count = self.samples.map_or(all, |samples| samples.min(all));
         let progress = Progress::new("looking at rods", usize::try_from(count).unwrap_or(usize::MAX));
-        let found = self.search(&wish, searched, &progress)?;
+        let found = self.search(&space, searched, &progress)?;
         progress.finish();
-        let mut answer = answer::design_rod(wish, found, &asked)?;
+        let mut answer = answer::design_rod(space, found, &asked)?;
         let provenance = &mut answer.report.provenance;
         *provenance = vec![
             ("design file".into(), self.design.display().to_string()),

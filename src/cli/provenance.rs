@@ -103,18 +103,18 @@ fn named_in(path: &Path) -> Vec<PathBuf> {
 mod tests {
     use super::*;
 
-    fn of(arguments: &[&str]) -> Provenance {
+    fn provenance(arguments: &[&str]) -> Provenance {
         Provenance::of(arguments.iter().map(|argument| (*argument).to_owned()))
     }
 
     #[test]
     fn where_a_report_goes_is_no_part_of_the_command() {
-        let made = of(&["fit", "a b.csv", "--out", "x", "--mode=fea", "--out=y"]);
+        let made = provenance(&["fit", "a b.csv", "--out", "x", "--mode=fea", "--out=y"]);
         assert_eq!(
-            of(&["fit", "-q", "a.csv"]).command,
-            of(&["fit", "a.csv", "--verbose", "--force"]).command
+            provenance(&["fit", "-q", "a.csv"]).command,
+            provenance(&["fit", "a.csv", "--verbose", "--force"]).command
         );
         assert_eq!(made.command, "rodcal fit 'a b.csv' --mode=fea");
-        assert_eq!(of(&["--out", "x"]).command, of(&["--out=y"]).command);
+        assert_eq!(provenance(&["--out", "x"]).command, provenance(&["--out=y"]).command);
     }
 }

@@ -11,9 +11,10 @@ use rodcal::delimited::visible;
 use rodcal::parallel::in_parallel;
 use rodcal::{Error, Result};
 use rodcal_trial::answers::{self, Answer};
-use rodcal_trial::envelope::{self, Manifest, Plan};
+use rodcal_trial::archive::{self, Manifest, Plan};
 use rodcal_trial::rig::residuals;
-use rodcal_trial::{Half, Seed, score};
+use rodcal_trial::score::{self, PendingFollowUp};
+use rodcal_trial::{Seed, Suite};
 use serde_json::json;
 
 use self::case::CaseFiles;
@@ -114,38 +115,38 @@ impl Make {
     fn run(&self) -> Result<Outcome> {
         let range = self.case_range.clone().unwrap_or(1..usize::from(self.cases) + 1);
         let key = key_of(self.key.as_deref(), &self.directory)?;
-        let half = match (self.rig, self.calibration, self.conflicts) {
-            (true, ..) => Half::Rig,
-            (_, true, _) => Half::Calibration,
-            (_, _, true) => Half::Conflicts,
-            _ => Half::Both,
+        let suite = match (self.rig, self.calibration, self.conflicts) {
+            (true, ..) => Suite::Rig,
+            (_, true, _) => Suite::Calibration,
+            (_, _, true) => Suite::Conflicts,
+            _ => Suite::Both,
         };
         let residuals = self.residuals.as_deref().map(residuals::read).transpose()?.unwrap_or_default();
         let progress = Progress::new("cases", range.len());
-        let plan = Plan { seed: self.seed, half, residuals, range };
-        let made = envelope::make(&self.directory, &key, &plan, || progress.one_more());
+        let plan = Plan { seed: self.seed, suite, residuals, range };
+        let staged = archive::make(&self.directory, &key, &plan, || progress.one_more());
         progress.finish();
-        let (made, directory) = (made?, self.directory.display().to_string());
+        let (staged, directory) = (staged?, self.directory.display().to_string());
         let shown = visible(&directory);
         let text = format!(
             "{} cases in {shown}, key in {} (keep it from whoever answers; it holds the seed).\nrodcal trial answer {shown}\n",
-            made.manifest.cases,
+            staged.manifest.cases,
             visible(&key.display().to_string())
         );
         let json = json!({
             "directory": directory,
             "key": key.display().to_string(),
-            "cases": made.manifest.cases,
-            "key_sha256": made.manifest.key_sha256,
+            "cases": staged.manifest.cases,
+            "key_sha256": staged.manifest.key_sha256,
         });
         let mut warnings = Vec::new();
-        if made.seed.is_small() {
+        if staged.seed.is_small() {
             warnings.push(format!(
                 "the seed {} has fewer than 65 bits and may be guessed, and with it the key: leave --seed out",
-                made.seed
+                staged.seed
             ));
         }
-        Ok(Outcome { warnings, commit: Some(Box::new(|| made.seal())), ..Outcome::plain(json, text) })
+        Ok(Outcome { warnings, commit: Some(Box::new(|| staged.seal())), ..Outcome::plain(json, text) })
     }
 }
 
@@ -191,9 +192,9 @@ impl AnswerCases {
         manifest.check_case(&self.directory, case)?;
         // what the diagnosis refuses is an answer too, and the other cases go on
         let files = CaseFiles { directory: self.directory.join(case), changed: Vec::new() };
-        let (answer, asked_um) =
+        let (answer, predicted_um) =
             files.diagnosed().unwrap_or_else(|error| (json!({ "error": error.to_string() }), None));
-        Ok(Answer { case: case.to_owned(), answer, sha256: manifest.hashes_of(case), asked_um })
+        Ok(Answer { case: case.to_owned(), answer, sha256: manifest.hashes_of(case), predicted_um })
     }
 }
 
@@ -209,12 +210,12 @@ impl ScoreAnswers {
             });
         }
         let sealed = score::open(&self.directory, &key, &answers)?;
-        let due = sealed.due();
-        let progress = Progress::new("measured once more", due.len());
-        let outcomes = in_parallel(due.len(), |k| {
-            let outcome = self.once_more(&due[k]);
+        let pending = sealed.pending();
+        let progress = Progress::new("measured once more", pending.len());
+        let outcomes = in_parallel(pending.len(), |k| {
+            let outcome = self.follow_up(&pending[k]);
             progress.one_more();
-            Ok((due[k].case.clone(), outcome?))
+            Ok((pending[k].case.clone(), outcome?))
         });
         progress.finish();
         let score = sealed.score(&outcomes.into_iter().collect::<Result<Vec<_>>>()?);
@@ -222,12 +223,12 @@ impl ScoreAnswers {
     }
 
     /// Makes the measurement that an answer proposes and diagnoses the recording with it.
-    fn once_more(&self, due: &score::Due) -> Result<score::Outcome> {
-        let changed = match due.files(&self.directory)? {
+    fn follow_up(&self, pending: &PendingFollowUp) -> Result<score::Outcome> {
+        let changed = match pending.files(&self.directory)? {
             Ok(files) => files,
             Err(outcome) => return Ok(outcome),
         };
-        let files = CaseFiles { directory: self.directory.join(&due.case), changed };
+        let files = CaseFiles { directory: self.directory.join(&pending.case), changed };
         Ok(match files.diagnosed() {
             Ok((diagnosis, _)) => score::Outcome::Diagnosed(diagnosis),
             Err(error) => score::Outcome::NotDone(error.to_string()),
@@ -236,5 +237,5 @@ impl ScoreAnswers {
 }
 
 fn key_of(key: Option<&Path>, directory: &Path) -> Result<PathBuf> {
-    key.map_or_else(|| envelope::default_key(directory), |key| Ok(key.to_owned()))
+    key.map_or_else(|| archive::default_key(directory), |key| Ok(key.to_owned()))
 }

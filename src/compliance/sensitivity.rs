@@ -147,8 +147,8 @@ mod tests {
                 let step = if one.value == 0.0 { 1e-6 } else { 1e-4 * one.value };
                 let [a, b, c, d] =
                     [-2.0, -1.0, 1.0, 2.0].map(|k| at(&rod.with(&one.number, one.value + k * step)));
-                let difference = |of: &dyn Fn(&(Compliance, f64)) -> Matrix3<f64>| {
-                    ((of(&c) - of(&b)) * 8.0 - (of(&d) - of(&a))) / (12.0 * step)
+                let difference = |entry: &dyn Fn(&(Compliance, f64)) -> Matrix3<f64>| {
+                    ((entry(&c) - entry(&b)) * 8.0 - (entry(&d) - entry(&a))) / (12.0 * step)
                 };
                 // to 1e-6 of the derivative, and to 1e-10 of what 1 % of the number would do to the
                 // figure
@@ -156,14 +156,14 @@ mod tests {
                 let force = paper_contact_force();
                 let index = |both: &(Compliance, f64)| Matrix3::repeat(both.0.index(force));
                 let mass = |both: &(Compliance, f64)| Matrix3::repeat(both.1);
-                for (slope, of) in [
+                for (slope, entry) in [
                     (one.compliance.force, &(|both: &(Compliance, f64)| both.0.force) as &dyn Fn(&_) -> _),
                     (one.compliance.gravity, &|both: &(Compliance, f64)| both.0.gravity),
                     (Matrix3::repeat(one.index), &index),
                     (Matrix3::repeat(one.mass), &mass),
                 ] {
-                    let off = (slope - difference(of)).amax();
-                    let whole = 1e-6 * slope.amax() + 1e-10 * of(&here).amax() / size;
+                    let off = (slope - difference(entry)).amax();
+                    let whole = 1e-6 * slope.amax() + 1e-10 * entry(&here).amax() / size;
                     assert!(off < whole, "{}: {off} of {whole}", one.number);
                 }
             }

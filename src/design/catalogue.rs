@@ -136,9 +136,9 @@ pub(super) fn without_price(tubes: &[Tube]) -> Option<&str> {
 }
 
 /// An error of whatever is wrong with a catalogue's file as such.
-pub(super) fn unreadable(error: Error, of: &str) -> Error {
+pub(super) fn unreadable(error: Error, file: &str) -> Error {
     error.with_hint(Some(format!(
-        "the catalogue of {of}; a path is seen from there, \"{BUILT_IN}\" is the built-in one"
+        "the catalogue of {file}; a path is seen from there, \"{BUILT_IN}\" is the built-in one"
     )))
 }
 

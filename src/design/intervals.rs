@@ -82,21 +82,21 @@ pub fn indistinguishable(designs: &[Design], intervals: &[Intervals], goals: &[G
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{Searched, Study, Wish, search};
+    use crate::design::{DesignSpace, Searched, Study, search};
 
-    fn wish(l2: &str) -> Wish {
+    fn space(l2: &str) -> DesignSpace {
         let text = format!(
             "[geometry]\nl1_mm = 150\nl2_mm = {l2}\n[catalogue]\nfile = \"t.csv\"\n[tip]\nmass_g = 60\n\
              [objectives]\nminimise = [\"c_rod_um\"]\nmaximise = [\"reach_mm\"]\n"
         );
         let tubes = "name,material,outer_diameter_mm,inner_diameter_mm\na,steel,32,30\n";
-        Wish::from_toml("d.toml", &text, &|name| Ok((name.to_owned(), tubes.to_owned()))).unwrap()
+        DesignSpace::from_toml("d.toml", &text, &|name| Ok((name.to_owned(), tubes.to_owned()))).unwrap()
     }
 
-    fn of(wish: &Wish) -> (Vec<Design>, Vec<Intervals>) {
-        let designs = search(wish, Searched::All, &|_| {}).unwrap().front;
+    fn with_intervals(space: &DesignSpace) -> (Vec<Design>, Vec<Intervals>) {
+        let designs = search(space, Searched::All, &|_| {}).unwrap().front;
         let of_design = |design: &Design| {
-            let rod = wish.rod(design.index).unwrap();
+            let rod = space.rod(design.index).unwrap();
             Intervals::of(&rod, &Figures::slopes(&rod).unwrap())
         };
         let intervals = designs.iter().map(of_design).collect();
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn a_tip_is_as_far_as_its_two_lengths_say() {
-        let (designs, intervals) = of(&wish("525"));
+        let (designs, intervals) = with_intervals(&space("525"));
         // an L: reach² = L1² + L2², each known to 0.3 mm
         let (l1, l2) = (150.0f64, 525.0f64);
         let reach = l1.hypot(l2);
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn a_design_is_compared_with_all_of_its_front() {
         let study =
-            Study::new(wish("{ from = 500, to = 510, step = 0.1 }"), Searched::All, None, &|_| {}).unwrap();
+            Study::new(space("{ from = 500, to = 510, step = 0.1 }"), Searched::All, None, &|_| {}).unwrap();
         assert_eq!((study.found.front.len(), study.known.len()), (101, 101));
         assert!(study.shown.len() < 50);
         for shown in &study.shown {
@@ -136,9 +136,9 @@ mod tests {
 
     #[test]
     fn designs_of_one_material_differ_by_what_each_is_made_to() {
-        let wish = wish("[525, 525.1, 600]");
-        let (designs, intervals) = of(&wish);
-        assert_eq!(indistinguishable(&designs, &intervals, &wish.goals), [vec![1], vec![0], vec![]]);
+        let space = space("[525, 525.1, 600]");
+        let (designs, intervals) = with_intervals(&space);
+        assert_eq!(indistinguishable(&designs, &intervals, &space.goals), [vec![1], vec![0], vec![]]);
         // E is one and the same: the difference is better known than each by itself would let it
         let apart = intervals[0].half.get(Figure::CRod).unwrap() * 2f64.sqrt();
         assert!(intervals[0].half_of_difference(&intervals[1], Figure::CRod) < apart);

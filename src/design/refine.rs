@@ -19,7 +19,7 @@ use self::variable::{Variable, diameters, lengths, moved};
 pub use self::weights::weights;
 use super::figure::{Figure, Figures};
 use super::front::Design;
-use super::wish::Wish;
+use super::space::DesignSpace;
 use crate::error::Result;
 use crate::parallel::in_parallel;
 use crate::rod::Rod;
@@ -80,7 +80,12 @@ pub struct Refined {
 ///
 /// # Errors
 /// What the beam model refuses.
-pub fn refine(wish: &Wish, front: &[Design], place: usize, weights: &[f64]) -> Result<Option<Refined>> {
+pub fn refine(
+    space: &DesignSpace,
+    front: &[Design],
+    place: usize,
+    weights: &[f64],
+) -> Result<Option<Refined>> {
     let Some(design) = front.get(place) else { return Ok(None) };
     let mut refined = Refined {
         place,
@@ -89,11 +94,11 @@ pub fn refine(wish: &Wish, front: &[Design], place: usize, weights: &[f64]) -> R
         continuous: None,
         catalogue: None,
         starts: (0, 0),
-        is_every_tube: wish.is_one_tube && wish.tubes.len() <= ALL_TUBES,
+        is_every_tube: space.is_one_tube && space.tubes.len() <= ALL_TUBES,
     };
     let search =
-        |tubes: [usize; 2]| Search { wish, from: &design.figures, weights, price: prices(wish, tubes) };
-    let own = search(wish.choice(design.index).tubes);
+        |tubes: [usize; 2]| Search { space, from: &design.figures, weights, price: prices(space, tubes) };
+    let own = search(space.choice(design.index).tubes);
     let worth = |figures: &Figures| if own.is_kept(figures) { own.gain(figures) } else { f64::NEG_INFINITY };
 
     // no rod of the grid is better than the best of its front
@@ -103,9 +108,9 @@ pub fn refine(wish: &Wish, front: &[Design], place: usize, weights: &[f64]) -> R
     });
     let mut starts: Vec<u64> =
         starts(front, [place, of_grid]).into_iter().map(|place| front[place].index).collect();
-    let others: Vec<u64> = scattered(wish).filter(|index| !starts.contains(index)).collect();
+    let others: Vec<u64> = scattered(space).filter(|index| !starts.contains(index)).collect();
     starts.extend(others);
-    let found = in_parallel(starts.len(), |k| from_grid(wish, starts[k], &search));
+    let found = in_parallel(starts.len(), |k| from_grid(space, starts[k], &search));
     let mut ends = Vec::new();
     for found in found {
         ends.extend(found?);
@@ -114,7 +119,7 @@ pub fn refine(wish: &Wish, front: &[Design], place: usize, weights: &[f64]) -> R
     for _ in 0..MOST_ROUNDS {
         let gain = |end: &End| worth(&end.figures);
         let Some(best) = ends.iter().max_by(|a, b| gain(a).total_cmp(&gain(b))) else { break };
-        let (known, variables) = (gain(best), variables(wish, &best.rod));
+        let (known, variables) = (gain(best), variables(space, &best.rod));
         let found = in_parallel(2 * variables.len(), |k| {
             from_end_of_range(best, &variables, k / 2, k % 2 == 1, &search(best.tubes))
         });
@@ -139,30 +144,30 @@ pub fn refine(wish: &Wish, front: &[Design], place: usize, weights: &[f64]) -> R
         (gained > NOTHING).then_some(Better { rod, tubes, figures, gained })
     };
     let of_catalogue = if refined.is_every_tube {
-        (0..wish.tubes.len()).map(|tube| [tube; 2]).collect()
+        (0..space.tubes.len()).map(|tube| [tube; 2]).collect()
     } else {
-        nearest(wish, [wish.choice(design.index).tubes, best.tubes], &best.rod)
+        nearest(space, [space.choice(design.index).tubes, best.tubes], &best.rod)
     };
     let tried = in_parallel(of_catalogue.len(), |k| {
-        let [first, second] = of_catalogue[k].map(|tube| wish.tubes[tube].pipe.clone());
+        let [first, second] = of_catalogue[k].map(|tube| space.tubes[tube].pipe.clone());
         let with = Rod { pipe1: first.clone(), bend: first, pipe2: second, ..best.rod.clone() };
-        search(of_catalogue[k]).best(&with, &lengths(wish, &with))
+        search(of_catalogue[k]).best(&with, &lengths(space, &with))
     });
     for (tubes, found) in of_catalogue.iter().zip(tried) {
         let (rod, figures) = found?;
         let known = refined.catalogue.as_ref().map_or(0.0, |known| known.gained);
-        let new = better(rod, names(wish, *tubes), figures);
+        let new = better(rod, names(space, *tubes), figures);
         if new.as_ref().is_some_and(|new| new.gained > known) {
             refined.catalogue = new;
         }
     }
     let grid = &front[of_grid];
     if worth(&grid.figures) > refined.catalogue.as_ref().map_or(0.0, |known| known.gained)
-        && let Ok(rod) = wish.rod(grid.index)
+        && let Ok(rod) = space.rod(grid.index)
     {
-        refined.catalogue = better(rod, names(wish, wish.choice(grid.index).tubes), grid.figures);
+        refined.catalogue = better(rod, names(space, space.choice(grid.index).tubes), grid.figures);
     }
-    let tubes = if best.is_of_catalogue { names(wish, best.tubes) } else { Vec::new() };
+    let tubes = if best.is_of_catalogue { names(space, best.tubes) } else { Vec::new() };
     refined.continuous = better(best.rod.clone(), tubes, best.figures);
     // what can be bought is one of those that could be
     let known = refined.continuous.as_ref().map_or(0.0, |known| known.gained);
@@ -181,20 +186,24 @@ struct End {
     is_of_catalogue: bool,
 }
 
-fn from_grid<'a>(wish: &Wish, index: u64, search: &impl Fn([usize; 2]) -> Search<'a>) -> Result<Option<End>> {
-    let Ok(rod) = wish.rod(index) else { return Ok(None) };
-    let tubes = wish.choice(index).tubes;
-    let (best, figures) = search(tubes).best(&rod, &variables(wish, &rod))?;
+fn from_grid<'a>(
+    space: &DesignSpace,
+    index: u64,
+    search: &impl Fn([usize; 2]) -> Search<'a>,
+) -> Result<Option<End>> {
+    let Ok(rod) = space.rod(index) else { return Ok(None) };
+    let tubes = space.choice(index).tubes;
+    let (best, figures) = search(tubes).best(&rod, &variables(space, &rod))?;
     let is_kept = best.pipe1.section == rod.pipe1.section && best.pipe2.section == rod.pipe2.section;
     Ok(Some(End { rod: best, figures, tubes, is_of_catalogue: is_kept }))
 }
 
 /// What may vary of a rod.
-fn variables(wish: &Wish, rod: &Rod) -> Vec<Variable> {
-    let mut all = lengths(wish, rod);
+fn variables(space: &DesignSpace, rod: &Rod) -> Vec<Variable> {
+    let mut all = lengths(space, rod);
     // a tube that nobody sells has no price
-    if !wish.goals.iter().any(|goal| goal.figure == Figure::Price) {
-        all.extend(diameters(wish, rod));
+    if !space.goals.iter().any(|goal| goal.figure == Figure::Price) {
+        all.extend(diameters(space, rod));
     }
     all
 }
@@ -234,42 +243,42 @@ fn starts(front: &[Design], first: [usize; 2]) -> Vec<usize> {
 
 /// Combinations all over the grid, whether they keep the limits or not: multiples of the golden
 /// section leave no gap in what varies slowest (tubes, angles), nor in what varies fastest.
-fn scattered(wish: &Wish) -> impl Iterator<Item = u64> {
+fn scattered(space: &DesignSpace) -> impl Iterator<Item = u64> {
     let golden = (5f64.sqrt() - 1.0) / 2.0;
-    let count = wish.combinations();
+    let count = space.combinations();
     let most = (SCATTERED as u64).min(count);
     (1..=most).map(move |k| ((k as f64 * golden).fract() * count as f64) as u64)
 }
 
-fn names(wish: &Wish, tubes: [usize; 2]) -> Vec<String> {
-    let mut names = tubes.map(|tube| wish.tubes[tube].name.clone()).to_vec();
+fn names(space: &DesignSpace, tubes: [usize; 2]) -> Vec<String> {
+    let mut names = tubes.map(|tube| space.tubes[tube].name.clone()).to_vec();
     names.dedup();
     names
 }
 
-fn prices(wish: &Wish, tubes: [usize; 2]) -> [f64; 2] {
-    tubes.map(|tube| wish.tubes[tube].price_per_m.unwrap_or(f64::NAN))
+fn prices(space: &DesignSpace, tubes: [usize; 2]) -> [f64; 2] {
+    tubes.map(|tube| space.tubes[tube].price_per_m.unwrap_or(f64::NAN))
 }
 
 /// Combinations of tubes near those of `rod`, and the ones that designs had.
-fn nearest(wish: &Wish, had: [[usize; 2]; 2], rod: &Rod) -> Vec<[usize; 2]> {
+fn nearest(space: &DesignSpace, had: [[usize; 2]; 2], rod: &Rod) -> Vec<[usize; 2]> {
     let near = |pipe: &crate::rod::Pipe, count: usize| -> Vec<usize> {
         let ln = |section: &Section| {
             section.as_round().map_or([f64::NAN; 2], |round| [round.outer_diameter.ln(), round.wall().ln()])
         };
         let [outer, wall] = ln(&pipe.section);
         let far = |tube: usize| {
-            let [o, w] = ln(&wish.tubes[tube].pipe.section);
+            let [o, w] = ln(&space.tubes[tube].pipe.section);
             (o - outer).powi(2) + (w - wall).powi(2)
         };
-        let same = |tube: &usize| wish.tubes[*tube].pipe.material.name == pipe.material.name;
-        let mut tubes: Vec<usize> = (0..wish.tubes.len()).filter(same).collect();
+        let same = |tube: &usize| space.tubes[*tube].pipe.material.name == pipe.material.name;
+        let mut tubes: Vec<usize> = (0..space.tubes.len()).filter(same).collect();
         tubes.sort_by(|&a, &b| far(a).total_cmp(&far(b)));
         tubes.truncate(count);
         tubes
     };
     let mut all = had.to_vec();
-    match wish.is_one_tube {
+    match space.is_one_tube {
         true => all.extend(near(&rod.pipe1, TUBES).into_iter().map(|tube| [tube; 2])),
         false => {
             let second = near(&rod.pipe2, TUBES_OF_TWO);
@@ -291,30 +300,30 @@ mod tests {
     const TUBES: &str = "name,material,outer_diameter_mm,inner_diameter_mm\nthin,steel,30,28\nmiddle,steel,32,29\n\
                          wide,steel,36,34\n";
 
-    fn wish(l1: &str, limits: &str) -> Wish {
+    fn space(l1: &str, limits: &str) -> DesignSpace {
         let text = format!(
             "[geometry]\nl1_mm = {l1}\nl2_mm = {{ from = 300, to = 600, step = 100 }}\n[catalogue]\nfile = \"t.csv\"\n\
              [tip]\nmass_g = 60\n[constraints]\n{limits}\n[objectives]\nminimise = [\"c_rod_um\"]\n\
              maximise = [\"reach_mm\"]\n"
         );
-        Wish::from_toml("d.toml", &text, &|name| Ok((name.to_owned(), TUBES.to_owned()))).unwrap()
+        DesignSpace::from_toml("d.toml", &text, &|name| Ok((name.to_owned(), TUBES.to_owned()))).unwrap()
     }
 
     /// Beside all rods of a grid of 1 mm and 0.05 mm.
     #[test]
     fn no_rod_of_a_fine_grid_is_better() {
-        let wish =
-            wish("{ from = 100, to = 250, step = 50 }", "max_mass_g = 700\nmin_first_frequency_hz = 40");
-        let front = search(&wish, Searched::All, &|_| {}).unwrap().front;
+        let space =
+            space("{ from = 100, to = 250, step = 50 }", "max_mass_g = 700\nmin_first_frequency_hz = 40");
+        let front = search(&space, Searched::All, &|_| {}).unwrap().front;
         let place = 7;
         let start = front[place];
-        let refined = refine(&wish, &front, place, &[1.0, 0.0]).unwrap().unwrap();
+        let refined = refine(&space, &front, place, &[1.0, 0.0]).unwrap().unwrap();
         let (any, bought) = (refined.continuous.unwrap(), refined.catalogue.unwrap());
         assert!(any.gained >= bought.gained && bought.gained > 0.002, "{} {}", any.gained, bought.gained);
         for better in [&any, &bought] {
             let of_figure = |figure: Figure| better.figures.get(figure).unwrap();
             assert!(of_figure(Figure::Reach) >= start.figures.get(Figure::Reach).unwrap() * (1.0 - 1e-9));
-            assert!(wish.limits.iter().all(|limit| limit.is_kept(&better.figures)));
+            assert!(space.limits.iter().all(|limit| limit.is_kept(&better.figures)));
             let again = Figures::of(&better.rod, &mut TipSolver::default()).unwrap();
             assert_eq!(again.get(Figure::CRod), better.figures.get(Figure::CRod));
         }
@@ -352,23 +361,23 @@ mod tests {
     /// too.
     #[test]
     fn no_rod_of_the_grid_is_better_by_any_weights() {
-        let wish = wish("{ from = 100, to = 250, step = 50 }", "max_mass_g = 700");
-        let front = search(&wish, Searched::All, &|_| {}).unwrap().front;
+        let space = space("{ from = 100, to = 250, step = 50 }", "max_mass_g = 700");
+        let front = search(&space, Searched::All, &|_| {}).unwrap().front;
         let mut gained = 0;
         for (asked, given) in
             [("c_rod_um", [1.0, 0.0]), ("reach_mm", [0.0, 1.0]), ("c_rod_um=3,reach_mm=1", [0.75, 0.25])]
         {
-            let weights = weights(&wish, Some(asked)).unwrap();
+            let weights = weights(&space, Some(asked)).unwrap();
             assert_eq!(weights, given);
             let start = &front[3];
-            let refined = refine(&wish, &front, 3, &weights).unwrap().unwrap();
+            let refined = refine(&space, &front, 3, &weights).unwrap().unwrap();
             let score = |figures: &Figures| {
                 let ln = |figure: Figure| figures.get(figure).unwrap().ln();
                 weights[0] * ln(Figure::CRod) - weights[1] * ln(Figure::Reach)
             };
             let may_be = |design: &&Design| {
                 let is_no_worse = |goal: &Goal| goal.cost(&design.figures) <= goal.cost(&start.figures);
-                wish.goals.iter().zip(&weights).all(|(goal, weight)| *weight > 0.0 || is_no_worse(goal))
+                space.goals.iter().zip(&weights).all(|(goal, weight)| *weight > 0.0 || is_no_worse(goal))
             };
             let best = front.iter().filter(may_be).map(|d| score(&d.figures)).fold(f64::INFINITY, f64::min);
             // where nothing is gained the design stays
@@ -382,7 +391,7 @@ mod tests {
         }
         assert!(gained >= 2, "{gained}");
         for wrong in ["mass_g", "c_rod_um=0", "c_rod_um=x", "c_rod_um,c_rod_um", ""] {
-            let error = weights(&wish, Some(wrong)).unwrap_err().to_string();
+            let error = weights(&space, Some(wrong)).unwrap_err().to_string();
             assert!(error.contains("refine-goal"), "{error}");
         }
     }
@@ -402,9 +411,9 @@ mod tests {
         let tubes = "name,material,outer_diameter_mm,inner_diameter_mm\na,steel,20,16\nb,steel,30,27\nc,steel,50,48\n";
         let best = |step: f64, gamma: f64| {
             let read = |name: &str| Ok((name.to_owned(), tubes.to_owned()));
-            let wish = Wish::from_toml("d.toml", &text(step, gamma), &read).unwrap();
-            let front = search(&wish, Searched::All, &|_| {}).unwrap().front;
-            let refined = refine(&wish, &front, 0, &[1.0]).unwrap().unwrap();
+            let space = DesignSpace::from_toml("d.toml", &text(step, gamma), &read).unwrap();
+            let front = search(&space, Searched::All, &|_| {}).unwrap().front;
+            let refined = refine(&space, &front, 0, &[1.0]).unwrap().unwrap();
             assert!(front.len() == 1 && refined.starts.0 > 1, "{:?}", refined.starts);
             let figures = refined.continuous.map_or(front[0].figures, |better| better.figures);
             figures.get(Figure::CRod).unwrap()
@@ -427,10 +436,10 @@ mod tests {
                  = {gamma}\n[catalogue]\nfile = \"t.csv\"\n[tip]\nmass_g = 23\n[constraints]\nmax_mass_g = 408\nmin_reach_mm = \
                  514\n[objectives]\nminimise = [\"c_rod_um\"]\n"
             );
-            let wish =
-                Wish::from_toml("d.toml", &text, &|name| Ok((name.to_owned(), tubes.clone()))).unwrap();
-            let front = search(&wish, Searched::All, &|_| {}).unwrap().front;
-            let refined = refine(&wish, &front, 0, &[1.0]).unwrap().unwrap();
+            let space = DesignSpace::from_toml("d.toml", &text, &|name| Ok((name.to_owned(), tubes.clone())))
+                .unwrap();
+            let front = search(&space, Searched::All, &|_| {}).unwrap().front;
+            let refined = refine(&space, &front, 0, &[1.0]).unwrap().unwrap();
             let figures = refined.continuous.map_or(front[0].figures, |better| better.figures);
             figures.get(Figure::CRod).unwrap()
         };
@@ -444,9 +453,10 @@ mod tests {
         let text = "[geometry]\nl1_mm = 150\nl2_mm = 500\n[catalogue]\nfile = \"t.csv\"\n[objectives]\n\
                     minimise = [\"c_rod_um\"]\n";
         let one = &TUBES[..TUBES.find("middle").unwrap()];
-        let wish = Wish::from_toml("d.toml", text, &|name| Ok((name.to_owned(), one.to_owned()))).unwrap();
-        let front = search(&wish, Searched::All, &|_| {}).unwrap().front;
-        let refined = refine(&wish, &front, 0, &[1.0]).unwrap().unwrap();
+        let space =
+            DesignSpace::from_toml("d.toml", text, &|name| Ok((name.to_owned(), one.to_owned()))).unwrap();
+        let front = search(&space, Searched::All, &|_| {}).unwrap().front;
+        let refined = refine(&space, &front, 0, &[1.0]).unwrap().unwrap();
         assert!(refined.continuous.is_none() && refined.catalogue.is_none());
     }
 }

@@ -8,7 +8,7 @@ use super::figure::Figures;
 use super::front::{Design, Front};
 use super::nearest::{Nearest, Relaxed};
 use super::search::{Search, Searched};
-use super::wish::Wish;
+use super::space::DesignSpace;
 use crate::error::{Error, Place, Result};
 
 /// First line of the text.
@@ -35,7 +35,7 @@ impl<'w> Search<'w> {
         let nearest = &total.nearest;
         lines.push(nearest.one_limit.len().to_string());
         for relaxed in &nearest.one_limit {
-            let place = self.wish.limits.iter().position(|limit| limit.key == relaxed.limit.key);
+            let place = self.space.limits.iter().position(|limit| limit.key == relaxed.limit.key);
             let place = place.unwrap_or(0);
             lines.push(format!("{place} {} {}", relaxed.to.to_bits(), design(&relaxed.design)));
         }
@@ -44,7 +44,7 @@ impl<'w> Search<'w> {
             None => "none".into(),
         });
         lines.push(CONTENT.into());
-        lines.push(self.wish.content.clone());
+        lines.push(self.space.content.clone());
         lines.join("\n")
     }
 
@@ -65,8 +65,13 @@ impl<'w> Search<'w> {
     /// # Errors
     /// [`Error::Input`] where it is another search (another program, design file, catalogue or
     /// sample), or no search.
-    pub fn from_text(wish: &'w Wish, of: Searched, file: &str, text: &str) -> Result<Search<'w>> {
-        Search::new(wish, of)?.known(file, text)
+    pub fn from_text(
+        space: &'w DesignSpace,
+        searched: Searched,
+        file: &str,
+        text: &str,
+    ) -> Result<Search<'w>> {
+        Search::new(space, searched)?.known(file, text)
     }
 
     /// The part of a search whose text this is.
@@ -74,18 +79,18 @@ impl<'w> Search<'w> {
     /// # Errors
     /// As [`Search::from_text`] and [`Search::part`].
     pub fn part_from_text(
-        wish: &'w Wish,
-        of: Searched,
+        space: &'w DesignSpace,
+        searched: Searched,
         part: Range<u64>,
         file: &str,
         text: &str,
     ) -> Result<Search<'w>> {
-        Search::part(wish, of, part)?.known(file, text)
+        Search::part(space, searched, part)?.known(file, text)
     }
 
     /// This search, which has looked at nothing yet, as a text has it.
     fn known(mut self, file: &str, text: &str) -> Result<Search<'w>> {
-        let (wish, asked) = (self.wish, self.asked());
+        let (space, asked) = (self.space, self.asked());
         let search = &mut self;
         let mut lines = Lines { file, lines: text.lines(), number: 0 };
         let another = |line: usize, found: String, expected: &str| Error::Input {
@@ -104,9 +109,9 @@ impl<'w> Search<'w> {
             return Err(another(2, format!("{sampled:?}"), &expected));
         }
         let content = text.split_once(&format!("\n{CONTENT}\n")).map_or("", |(_, content)| content);
-        if content != wish.content {
+        if content != space.content {
             let found = "a search of another design file or catalogue".to_owned();
-            return Err(another(1, found, &format!("one of {} as it is now", wish.file)));
+            return Err(another(1, found, &format!("one of {} as it is now", space.file)));
         }
         let total = &mut search.total;
         let [done, feasible] = lines.numbers()?;
@@ -115,12 +120,12 @@ impl<'w> Search<'w> {
         total.impossible = lines.numbers()?;
         let [count] = lines.numbers()?;
         let designs = (0..count).map(|_| Ok(design_of(&lines.numbers::<9>()?)));
-        total.front = Front::known(&wish.goals, designs.collect::<Result<_>>()?);
+        total.front = Front::known(&space.goals, designs.collect::<Result<_>>()?);
         let mut nearest = Nearest::default();
         let [count] = lines.numbers()?;
         for _ in 0..count {
             let all = lines.numbers::<11>()?;
-            let Some(limit) = wish.limits.get(all[0] as usize) else { return Err(lines.error()) };
+            let Some(limit) = space.limits.get(all[0] as usize) else { return Err(lines.error()) };
             let to = f64::from_bits(all[1]);
             nearest.one_limit.push(Relaxed { limit: *limit, to, design: design_of(&all[2..]) });
         }
@@ -130,7 +135,7 @@ impl<'w> Search<'w> {
             nearest.all_limits = Some((design_of(&all[1..]), f64::from_bits(all[0])));
         }
         total.nearest = nearest;
-        if total.broken.len() != wish.limits.len() || done < search.part.start || done > search.part.end {
+        if total.broken.len() != space.limits.len() || done < search.part.start || done > search.part.end {
             return Err(lines.error());
         }
         search.done = done;
@@ -192,34 +197,34 @@ mod tests {
         "name,material,outer_diameter_mm,inner_diameter_mm\na,steel,30,28\nb,aluminium,40,36\n";
 
     /// More than one block of rods.
-    fn wish(limit: &str) -> Wish {
-        wish_in_steps(1, limit)
+    fn space(limit: &str) -> DesignSpace {
+        space_in_steps(1, limit)
     }
 
-    fn wish_in_steps(step: u32, limit: &str) -> Wish {
+    fn space_in_steps(step: u32, limit: &str) -> DesignSpace {
         let text = format!(
             "[geometry]\nl1_mm = {{ from = 100, to = 400, step = {step} }}\nl2_mm = {{ from = 300, to = 800, step = {step} }}\n\
              [catalogue]\nfile = \"t.csv\"\n[constraints]\nmax_mass_g = {limit}\nmin_reach_mm = 500\n[objectives]\n\
              minimise = [\"c_rod_um\"]\nmaximise = [\"reach_mm\"]\n"
         );
-        Wish::from_toml("d.toml", &text, &|name| Ok((name.to_owned(), TUBES.to_owned()))).unwrap()
+        DesignSpace::from_toml("d.toml", &text, &|name| Ok((name.to_owned(), TUBES.to_owned()))).unwrap()
     }
 
     #[test]
     fn a_search_that_was_killed_goes_on_as_if_nothing_had_been() {
         for limit in ["700", "10"] {
-            let wish = wish(limit);
-            let mut search = Search::new(&wish, Searched::All).unwrap();
+            let space = space(limit);
+            let mut search = Search::new(&space, Searched::All).unwrap();
             search.go_on(&|_| {}).unwrap();
             assert!(!search.is_done());
             let kept = search.to_text();
             drop(search);
-            let mut again = Search::from_text(&wish, Searched::All, "kept", &kept).unwrap();
+            let mut again = Search::from_text(&space, Searched::All, "kept", &kept).unwrap();
             assert_eq!(again.to_text(), kept);
             while !again.is_done() {
                 again.go_on(&|_| {}).unwrap();
             }
-            let whole = super::super::search(&wish, Searched::All, &|_| {}).unwrap();
+            let whole = super::super::search(&space, Searched::All, &|_| {}).unwrap();
             let found = again.found().unwrap();
             assert_eq!((found.evaluated, found.feasible), (whole.evaluated, whole.feasible));
             assert_eq!((&found.front, &found.broken), (&whole.front, &whole.broken));
@@ -230,44 +235,45 @@ mod tests {
     /// Also where the last part is short, where nothing keeps all limits, and of samples.
     #[test]
     fn parts_that_others_looked_at_are_the_search() {
-        for (limit, of) in
+        for (limit, searched) in
             [("700", Searched::All), ("10", Searched::All), ("700", Searched::Samples(12_000, 3))]
         {
-            let wish = wish_in_steps(4, limit);
-            let mut all = Search::new(&wish, of).unwrap();
+            let space = space_in_steps(4, limit);
+            let mut all = Search::new(&space, searched).unwrap();
             let (count, size) = (all.count(), 2 * super::super::PART);
             for from in (0..count).step_by(size as usize) {
                 let part = from..count.min(from + size);
-                let mut one = Search::part(&wish, of, part.clone()).unwrap();
-                let unfinished = Search::part(&wish, of, part.clone()).unwrap();
+                let mut one = Search::part(&space, searched, part.clone()).unwrap();
+                let unfinished = Search::part(&space, searched, part.clone()).unwrap();
                 assert!(all.take_in(unfinished).is_err());
                 while !one.is_done() {
                     one.go_on(&|_| {}).unwrap();
                 }
-                let again = Search::part_from_text(&wish, of, part.clone(), "part", &one.to_text()).unwrap();
+                let again =
+                    Search::part_from_text(&space, searched, part.clone(), "part", &one.to_text()).unwrap();
                 assert_eq!(again.to_text(), one.to_text());
                 all.take_in(again).unwrap();
                 // once is enough
                 assert!(all.take_in(one).is_err());
             }
-            let whole = super::super::search(&wish, of, &|_| {}).unwrap();
+            let whole = super::super::search(&space, searched, &|_| {}).unwrap();
             let found = all.found().unwrap();
             assert_eq!((found.evaluated, found.feasible), (whole.evaluated, whole.feasible));
             assert_eq!((&found.front, &found.broken), (&whole.front, &whole.broken));
             assert_eq!((&found.impossible, &found.nearest), (&whole.impossible, &whole.nearest));
         }
-        let wish = wish("700");
+        let space = space("700");
         for part in [0..0, 1..4096, 0..5000, 0..u64::MAX, 4096..1 << 40] {
-            assert!(Search::part(&wish, Searched::All, part).is_err());
+            assert!(Search::part(&space, Searched::All, part).is_err());
         }
     }
 
     #[test]
     fn a_search_of_something_else_is_refused() {
-        let (one, other) = (wish("700"), wish("600"));
+        let (one, other) = (space("700"), space("600"));
         let kept = Search::new(&one, Searched::All).unwrap().to_text();
-        let refused = |wish: &Wish, of: Searched, text: &str, expected: &str| {
-            let error = Search::from_text(wish, of, "kept", text).err().unwrap().to_string();
+        let refused = |space: &DesignSpace, searched: Searched, text: &str, expected: &str| {
+            let error = Search::from_text(space, searched, "kept", text).err().unwrap().to_string();
             assert!(error.contains(expected), "{error}");
         };
         refused(&other, Searched::All, &kept, "another design file");

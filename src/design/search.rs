@@ -9,7 +9,7 @@ use super::figure::{Figure, Figures};
 use super::front::{Design, Front};
 use super::limits::Limit;
 use super::nearest::Nearest;
-use super::wish::Wish;
+use super::space::DesignSpace;
 use crate::beam::TipSolver;
 use crate::error::{Error, Result};
 use crate::parallel::in_parallel;
@@ -45,7 +45,7 @@ pub struct Found {
     pub feasible: u64,
     /// The front, best in the first goal first. All figures but the price are known of each.
     pub front: Vec<Design>,
-    /// For each limit of the wish the number of rods that break it. A rod counts for every limit
+    /// For each limit of the space the number of rods that break it. A rod counts for every limit
     /// that it breaks; its frequency is looked at only where it keeps all others.
     pub broken: Vec<u64>,
     /// Combinations that are no rods, in the order of [`Impossible::ALL`](super::Impossible::ALL).
@@ -63,13 +63,13 @@ pub(super) struct Sum {
     pub nearest: Nearest,
 }
 
-/// Looks at the rods of `wish` and keeps those that nobody betters. `progress` is called with how
+/// Looks at the rods of `space` and keeps those that nobody betters. `progress` is called with how
 /// many more were looked at. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// As [`Search::new`] and [`Search::go_on`].
-pub fn search(wish: &Wish, searched: Searched, progress: &(dyn Fn(u64) + Sync)) -> Result<Found> {
-    let mut search = Search::new(wish, searched)?;
+pub fn search(space: &DesignSpace, searched: Searched, progress: &(dyn Fn(u64) + Sync)) -> Result<Found> {
+    let mut search = Search::new(space, searched)?;
     while !search.is_done() {
         search.go_on(progress)?;
     }
@@ -83,7 +83,7 @@ pub fn search(wish: &Wish, searched: Searched, progress: &(dyn Fn(u64) + Sync)) 
 /// ([`Search::take_in`]): the front of the parts' fronts is the front, and all counts are sums of
 /// theirs.
 pub struct Search<'w> {
-    pub(super) wish: &'w Wish,
+    pub(super) space: &'w DesignSpace,
     pub(super) searched: Searched,
     /// Rods that the whole search looks at, and those of them that this one does.
     count: u64,
@@ -97,8 +97,8 @@ impl<'w> Search<'w> {
     ///
     /// # Errors
     /// [`Error::Argument`] for more than [`MOST_RODS`](super::MOST_RODS) rods, or no samples.
-    pub fn new(wish: &'w Wish, searched: Searched) -> Result<Search<'w>> {
-        let all = wish.combinations();
+    pub fn new(space: &'w DesignSpace, searched: Searched) -> Result<Search<'w>> {
+        let all = space.combinations();
         let count = match searched {
             Searched::Samples(samples, _) => samples.min(all),
             Searched::All => all,
@@ -113,11 +113,11 @@ impl<'w> Search<'w> {
         if count > super::MOST_RODS {
             return Err(Error::Argument {
                 name: "ranges",
-                found: wish.is_too_much().unwrap_or_default(),
+                found: space.is_too_much().unwrap_or_default(),
                 expected: format!("at most {} rods: take larger steps, or a sample", super::MOST_RODS),
             });
         }
-        Ok(Search { wish, searched, count, part: 0..count, done: 0, total: Sum::new(wish) })
+        Ok(Search { space, searched, count, part: 0..count, done: 0, total: Sum::new(space) })
     }
 
     /// Before any rod of a part of the search: of those from `part.start` to below `part.end` in
@@ -126,8 +126,8 @@ impl<'w> Search<'w> {
     /// # Errors
     /// As [`Search::new`]; [`Error::Argument`] for a part that begins or ends within what is looked
     /// at together ([`PART`]), or that is none of the search.
-    pub fn part(wish: &'w Wish, searched: Searched, part: Range<u64>) -> Result<Search<'w>> {
-        let whole = Search::new(wish, searched)?;
+    pub fn part(space: &'w DesignSpace, searched: Searched, part: Range<u64>) -> Result<Search<'w>> {
+        let whole = Search::new(space, searched)?;
         let is_bound = |at: u64| at.is_multiple_of(PART) || at == whole.count;
         if part.is_empty() || part.end > whole.count || !is_bound(part.start) || !is_bound(part.end) {
             return Err(Error::Argument {
@@ -145,12 +145,12 @@ impl<'w> Search<'w> {
     /// [`Error::Argument`] for one that is not done, or not of the rods that come next, or of
     /// another search; for a front of more than 200 000 designs.
     pub fn take_in(&mut self, next: Search<'_>) -> Result<()> {
-        let is_same = next.searched == self.searched && next.wish.content == self.wish.content;
+        let is_same = next.searched == self.searched && next.space.content == self.space.content;
         if !is_same || !next.is_done() || next.part.start != self.done || next.part.end > self.part.end {
             return Err(Error::Argument {
                 name: "part",
-                found: format!("rods {} to {} of {}", next.part.start, next.done, next.wish.file),
-                expected: format!("all rods of a part of {} that begins at {}", self.wish.file, self.done),
+                found: format!("rods {} to {} of {}", next.part.start, next.done, next.space.file),
+                expected: format!("all rods of a part of {} that begins at {}", self.space.file, self.done),
             });
         }
         self.total.merge(next.total);
@@ -178,7 +178,7 @@ impl<'w> Search<'w> {
     /// # Errors
     /// [`Error::Argument`] for a front of more than 200 000 designs; what the beam model refuses.
     pub fn go_on(&mut self, progress: &(dyn Fn(u64) + Sync)) -> Result<()> {
-        let (wish, all, count, done) = (self.wish, self.wish.combinations(), self.count, self.done);
+        let (space, all, count, done) = (self.space, self.space.combinations(), self.count, self.done);
         let seed = match self.searched {
             Searched::Samples(samples, seed) if samples < all => Some(seed),
             _ => None,
@@ -197,7 +197,7 @@ impl<'w> Search<'w> {
                 }
                 None => k,
             });
-            let sum = Task::new(wish).run(numbers);
+            let sum = Task::new(space).run(numbers);
             progress(to - from);
             sum
         });
@@ -224,11 +224,11 @@ impl<'w> Search<'w> {
     /// # Errors
     /// What the beam model refuses.
     pub fn found(self) -> Result<Found> {
-        let (wish, total) = (self.wish, self.total);
+        let (space, total) = (self.space, self.total);
         let designs = total.front.sorted();
         let whole = in_parallel(designs.len(), |k| {
             let design = designs[k];
-            match (design.figures.get(Figure::FirstFrequency), wish.rod(design.index)) {
+            match (design.figures.get(Figure::FirstFrequency), space.rod(design.index)) {
                 (None, Ok(rod)) => Ok(Design { figures: design.figures.with_frequency(&rod)?, ..design }),
                 _ => Ok(design),
             }
@@ -246,7 +246,7 @@ impl<'w> Search<'w> {
 
 /// What a task reuses from rod to rod.
 struct Task<'w> {
-    wish: &'w Wish,
+    space: &'w DesignSpace,
     solver: TipSolver,
     rod: Option<(Rod, [usize; 2])>,
     /// The frequency is a goal, is a limit.
@@ -254,17 +254,17 @@ struct Task<'w> {
 }
 
 impl<'w> Task<'w> {
-    fn new(wish: &'w Wish) -> Self {
+    fn new(space: &'w DesignSpace) -> Self {
         let is_frequency = |figure: Figure| figure == Figure::FirstFrequency;
         let swings = [
-            wish.goals.iter().any(|goal| is_frequency(goal.figure)),
-            wish.limits.iter().any(|limit| is_frequency(limit.figure)),
+            space.goals.iter().any(|goal| is_frequency(goal.figure)),
+            space.limits.iter().any(|limit| is_frequency(limit.figure)),
         ];
-        Task { wish, solver: TipSolver::default(), rod: None, swings }
+        Task { space, solver: TipSolver::default(), rod: None, swings }
     }
 
     fn run(&mut self, numbers: impl Iterator<Item = u64>) -> Result<Sum> {
-        let mut sum = Sum::new(self.wish);
+        let mut sum = Sum::new(self.space);
         for index in numbers {
             self.look_at(index, &mut sum)?;
         }
@@ -272,18 +272,18 @@ impl<'w> Task<'w> {
     }
 
     fn look_at(&mut self, index: u64, sum: &mut Sum) -> Result<()> {
-        let (wish, choice) = (self.wish, self.wish.choice(index));
+        let (space, choice) = (self.space, self.space.choice(index));
         let of_tubes = |tubes: [usize; 2]| {
-            let [first, second] = tubes.map(|tube| wish.tubes[tube].pipe.clone());
+            let [first, second] = tubes.map(|tube| space.tubes[tube].pipe.clone());
             let mut rod = Rod::new("", choice.l1, choice.l2, first).with_pipe2(second);
-            rod.masses.clone_from(&wish.masses);
-            rod.joints.clone_from(&wish.joints);
+            rod.masses.clone_from(&space.masses);
+            rod.joints.clone_from(&space.joints);
             rod
         };
         let known = self.rod.take().filter(|(_, tubes)| *tubes == choice.tubes);
         let (mut rod, tubes) = known.unwrap_or_else(|| (of_tubes(choice.tubes), choice.tubes));
-        wish.shape(&choice, &mut rod);
-        let judged = match wish.possible(&rod) {
+        space.shape(&choice, &mut rod);
+        let judged = match space.possible(&rod) {
             Ok(()) => self.judge(index, &rod, sum),
             Err(why) => {
                 sum.impossible[why as usize] += 1;
@@ -296,11 +296,11 @@ impl<'w> Task<'w> {
 
     fn judge(&mut self, index: u64, rod: &Rod, sum: &mut Sum) -> Result<()> {
         let mut figures = Figures::of(rod, &mut self.solver)?;
-        if self.wish.goals.iter().any(|goal| goal.figure == Figure::Price) {
-            figures.set(Figure::Price, self.wish.price(&self.wish.choice(index)));
+        if self.space.goals.iter().any(|goal| goal.figure == Figure::Price) {
+            figures.set(Figure::Price, self.space.price(&self.space.choice(index)));
         }
         let [is_goal, is_limit] = self.swings;
-        let limits = &self.wish.limits;
+        let limits = &self.space.limits;
         let of_tip = |limit: &&Limit| limit.figure != Figure::FirstFrequency;
         let mut broken: Vec<&Limit> =
             limits.iter().filter(of_tip).filter(|limit| !limit.is_kept(&figures)).collect();
@@ -335,11 +335,11 @@ impl<'w> Task<'w> {
 }
 
 impl Sum {
-    fn new(wish: &Wish) -> Sum {
+    fn new(space: &DesignSpace) -> Sum {
         Sum {
-            front: Front::new(&wish.goals),
+            front: Front::new(&space.goals),
             feasible: 0,
-            broken: vec![0; wish.limits.len()],
+            broken: vec![0; space.limits.len()],
             impossible: [0; 3],
             nearest: Nearest::default(),
         }

@@ -5,7 +5,7 @@ use super::front::Design;
 use super::intervals::{Intervals, indistinguishable};
 use super::refine::{Refined, refine, weights};
 use super::search::{Found, Searched, search};
-use super::wish::Wish;
+use super::space::DesignSpace;
 use crate::beam::TipSolver;
 use crate::error::{Error, Result};
 use crate::parallel::in_parallel;
@@ -21,7 +21,7 @@ const MOST_KNOWN: usize = 500;
 #[non_exhaustive]
 pub struct Study {
     /// What was asked for.
-    pub wish: Wish,
+    pub wish: DesignSpace,
     /// What was found.
     pub found: Found,
     /// The designs that are shown, best in the first goal first.
@@ -88,20 +88,20 @@ impl Study {
     /// # Errors
     /// As [`search`]; what the beam model refuses of `base`.
     pub fn new(
-        wish: Wish,
+        space: DesignSpace,
         searched: Searched,
         base: Option<Rod>,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Study> {
-        let found = search(&wish, searched, progress)?;
-        Study::of_found(wish, found, base)
+        let found = search(&space, searched, progress)?;
+        Study::of_found(space, found, base)
     }
 
     /// Looks closer at what a search found.
     ///
     /// # Errors
     /// What the beam model refuses.
-    pub fn of_found(wish: Wish, found: Found, base: Option<Rod>) -> Result<Study> {
+    pub fn of_found(space: DesignSpace, found: Found, base: Option<Rod>) -> Result<Study> {
         let last = found.front.len().saturating_sub(1);
         let places: Vec<usize> = match found.front.len() {
             count if count <= MOST_SHOWN => (0..count).collect(),
@@ -112,7 +112,7 @@ impl Study {
             _ => places.clone(),
         };
         let closer = in_parallel(of_interest.len(), |k| {
-            let Ok(rod) = wish.rod(found.front[of_interest[k]].index) else { return Ok(None) };
+            let Ok(rod) = space.rod(found.front[of_interest[k]].index) else { return Ok(None) };
             let slopes = Figures::slopes(&rod)?;
             Ok(Some((Intervals::of(&rod, &slopes), rod, slopes)))
         });
@@ -127,7 +127,7 @@ impl Study {
                     intervals: intervals.clone(),
                     rod: Rod { name: format!("design {}", place + 1), ..rod },
                     slopes,
-                    tubes: wish.tubes_of(design.index),
+                    tubes: space.tubes_of(design.index),
                     indistinguishable: Vec::new(),
                 });
             }
@@ -136,7 +136,7 @@ impl Study {
         let same = {
             let designs: Vec<Design> = known.iter().map(|known| found.front[known.place]).collect();
             let intervals: Vec<Intervals> = known.iter().map(|known| known.intervals.clone()).collect();
-            indistinguishable(&designs, &intervals, &wish.goals)
+            indistinguishable(&designs, &intervals, &space.goals)
         };
         let all: Vec<usize> = known.iter().map(|known| known.place).collect();
         for (known, same) in known.iter_mut().zip(same) {
@@ -145,8 +145,8 @@ impl Study {
                 shown.indistinguishable.clone_from(&known.indistinguishable);
             }
         }
-        let base = base.map(|rod| Base::new(rod, &wish, &found)).transpose()?;
-        Ok(Study { wish, found, shown, known, base, refined: None })
+        let base = base.map(|rod| Base::new(rod, &space, &found)).transpose()?;
+        Ok(Study { wish: space, found, shown, known, base, refined: None })
     }
 
     /// Refines the design at `place` of the front, from 0, for `goal`: as [`weights`] reads it.
@@ -176,16 +176,16 @@ impl Study {
 }
 
 impl Base {
-    fn new(rod: Rod, wish: &Wish, found: &Found) -> Result<Base> {
+    fn new(rod: Rod, space: &DesignSpace, found: &Found) -> Result<Base> {
         let figures = Figures::of(&rod, &mut TipSolver::default())?.with_frequency(&rod)?;
         let betters = |design: &&Design| {
             let costs = |goal: &Goal| (goal.cost(&design.figures), goal.cost(&figures));
-            wish.goals.iter().all(|goal| costs(goal).0 <= costs(goal).1)
-                && wish.goals.iter().any(|goal| costs(goal).0 < costs(goal).1)
+            space.goals.iter().all(|goal| costs(goal).0 <= costs(goal).1)
+                && space.goals.iter().any(|goal| costs(goal).0 < costs(goal).1)
         };
         let bettered_by = found.front.iter().filter(betters).count();
         let is_known = |figure: Figure| figures.get(figure).is_some();
-        let broken = wish.limits.iter().filter(|limit| is_known(limit.figure) && !limit.is_kept(&figures));
+        let broken = space.limits.iter().filter(|limit| is_known(limit.figure) && !limit.is_kept(&figures));
         Ok(Base { bettered_by, broken: broken.map(|limit| limit.key).collect(), rod, figures })
     }
 }

@@ -23,7 +23,7 @@
 //!
 //! What a calibration absorbs cannot be seen: an eccentricity of the last joint is nothing where
 //! the target lies on that joint's axis. Such effects are no candidates, but
-//! [`absorbed`](crate::inference::Diagnosed::absorbed) says which they are.
+//! [`absorbed`](crate::diagnosis::Diagnosed::absorbed) says which they are.
 
 mod diagnose;
 pub mod effects;

@@ -11,6 +11,14 @@
 //!
 //! so that all products with v take one pass over u, and nothing is whitened but v.
 
+pub(in crate::inference) mod background;
+pub(in crate::inference) mod fit_cache;
+pub(in crate::inference) mod gram_cache;
+pub(in crate::inference) mod linearised;
+pub(in crate::inference) mod part_products;
+pub(in crate::inference) mod stored_column;
+pub(in crate::inference) mod table;
+
 #[cfg(test)]
 mod tests;
 
@@ -19,8 +27,8 @@ use std::sync::{Arc, OnceLock};
 
 use nalgebra::DMatrix;
 
-use super::table::Table;
-use super::{Candidate, ForwardModel};
+use crate::inference::columns::table::Table;
+use crate::inference::{Candidate, ForwardModel};
 use crate::linalg::transposed_product;
 
 /// Share of a column that is not zero from which on it is stored whole.
@@ -29,7 +37,7 @@ const DENSE: f64 = 0.5;
 const AT_ONCE: usize = 1 << 20;
 
 /// Columns ∂response/∂parameter times the size of the parameter, of n data.
-pub(super) struct Columns {
+pub struct Columns {
     data: usize,
     /// Case of each datum; nothing where no two data are alike.
     cases: Vec<usize>,
@@ -58,7 +66,7 @@ enum Column {
 }
 
 /// Inner products of all columns with some vectors.
-pub(super) struct Products<'a> {
+pub struct Products<'a> {
     columns: &'a Columns,
     vectors: DMatrix<f64>,
     /// Vectors × columns, as these are stored.
@@ -265,7 +273,7 @@ struct Building<'a> {
 }
 
 impl Building<'_> {
-    fn add_step(&mut self, candidate: &Candidate, step: &super::Step) {
+    fn add_step(&mut self, candidate: &Candidate, step: &crate::inference::Step) {
         let next = self.sequences.len();
         let sequence = *self.known.entry(step.data.as_ptr()).or_insert(next);
         if sequence == next {

@@ -5,21 +5,21 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
-use super::background::{self, Folded};
-use super::effect::Reported;
-use super::evidence::rms;
-use super::held_out::{Theme, hold_out};
-use super::linearised::Linearised;
-use super::locate::{Structure, along, locate};
-use super::parts::{coverage_factor_of, estimates, explained, part};
-use super::pruning::{infer, settled};
-use super::scatter::{NoiseTest, Suspect, Tails};
-use super::search::Search;
-use super::selection::{DiscrepancyModel, NAMED, Pairs};
-use super::sessions::leave_one_session_out;
-use super::{
-    Covariate, Diagnosis, Discrepancy, Evidence, Finding, FindingPart, ForwardModel, HeldOut, Hypothesis,
-    Kind, ShownBy, Term,
+use crate::inference::columns::background;
+use crate::inference::columns::linearised::Linearised;
+use crate::inference::held_out::confirmed::{apart_from_nothing, confirmed};
+use crate::inference::held_out::sessions::leave_one_session_out;
+use crate::inference::held_out::{Theme, hold_out};
+use crate::inference::locate::{Structure, along, locate};
+use crate::inference::model::evidence::rms;
+use crate::inference::noise::scatter::{NoiseTest, Suspect, Tails};
+use crate::inference::search::Search;
+use crate::inference::search::findings::findings;
+use crate::inference::search::parts::part;
+use crate::inference::search::pruning::{infer, settled};
+use crate::inference::search::selection::{DiscrepancyModel, Pairs};
+use crate::inference::{
+    Covariate, Diagnosis, Discrepancy, Evidence, FindingPart, ForwardModel, Hypothesis, ShownBy, Term,
 };
 use crate::statistics::{chi_squared_survival, student_t_quantile};
 
@@ -43,9 +43,8 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let degrees_of_freedom = evidence.residual.len() as f64 - diagnosis.taken;
     diagnosis.noise_test = noise_test(Some(stated), diagnosis.noise, degrees_of_freedom.max(1.0));
     if diagnosis.discrepancy.is_none() && diagnosis.noise_test.is_contradicted() {
-        let (rms, shape) = (rms(&diagnosis.after), diagnosis.after.clone());
-        let shown_by = ShownBy::StatedNoise;
-        diagnosis.discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
+        let left = diagnosis.after.clone();
+        diagnosis.discrepancy = Some(Discrepancy::without_curve(ShownBy::StatedNoise, left));
     }
     diagnosis
 }
@@ -68,32 +67,22 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let mut parts: Vec<(Theme, FindingPart)> = (0..hypothesis.terms.len())
         .map(|position| {
             let candidate = &model.candidates()[hypothesis.terms[position].candidate];
-            (Theme::new(candidate), part(model, &search, &hypothesis, position, beside(&left_over)))
+            (
+                Theme::new(candidate),
+                part(
+                    model,
+                    &search,
+                    &hypothesis,
+                    position,
+                    left_over.as_ref().and_then(DiscrepancyModel::curve),
+                ),
+            )
         })
         .collect();
     parts.sort_by(|(_, a), (_, b)| b.explains.total_cmp(&a.explains));
     let findings = findings(model, &search, &hypothesis, held_out.as_ref(), rms(&before), parts);
     let lack_of_fit_after = search.lack_of_fit(&hypothesis, &predicted);
-    let mut longest = &hypothesis;
-    let mut discrepancy = None;
-    if let Some(DiscrepancyModel::Curve(longer)) = &left_over {
-        longest = longer;
-        // what the calibration would take up of the curve is not left
-        let response = model.response(&longer.terms);
-        let shape = search.predicted(longer, evidence, &response) - &predicted;
-        let curve = longer.terms.last();
-        discrepancy = Some(Discrepancy {
-            candidate: curve.map(|curve| curve.candidate),
-            location: curve.map(|curve| model.location(curve)),
-            shown_by: ShownBy::Curve,
-            rms: rms(&shape),
-            shape,
-        });
-    } else if let Some(DiscrepancyModel::Replicates) = left_over {
-        let (rms, shape) = (rms(&after), after.clone());
-        let shown_by = ShownBy::Repeats;
-        discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
-    }
+    let longest = left_over.as_ref().and_then(DiscrepancyModel::curve).unwrap_or(&hypothesis);
     let left = &evidence.residual - search.predicted(longest, evidence, &model.response(&longest.terms));
     let degrees_of_freedom = (search.degrees_of_freedom() as f64 - longest.determined).max(1.0);
     let weighted: f64 = left.iter().zip(&evidence.weight).map(|(r, w)| w * r * r).sum();
@@ -111,24 +100,23 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let ratio = search.shared_ratio();
     let own = if ratio > ZEROS_APART * ZEROS_APART { noise / (1.0 + ratio).sqrt() } else { noise };
     let is_too_much = evidence.most_scatter.is_some_and(|most| own > times * most);
-    if discrepancy.is_none() && (is_contradicted || is_too_much) {
-        let (rms, shape) = (rms(&after), after.clone());
-        let shown_by = if is_contradicted { ShownBy::StatedNoise } else { ShownBy::Size };
-        discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
-    }
     // many that are far off are no single ones
-    if discrepancy.is_none()
-        && (suspects.len() > suspects_at_most(evidence.recorded) || are_together(evidence, &suspects))
-    {
-        let (rms, shape) = (rms(&after), after.clone());
-        let shown_by = ShownBy::Suspects;
-        discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
-    }
-    if discrepancy.is_none() && folded.is_implausible(longest) {
-        let shape = folded.response(longest);
-        let (rms, shown_by) = (rms(&shape), ShownBy::Numbers);
-        discrepancy = Some(Discrepancy { candidate: None, location: None, shown_by, rms, shape });
-    }
+    let are_many = suspects.len() > suspects_at_most(evidence.recorded) || are_together(evidence, &suspects);
+    let discrepancy = match &left_over {
+        Some(DiscrepancyModel::Curve(longer)) => {
+            Some(described(model, &search, evidence, longer, &predicted))
+        }
+        Some(DiscrepancyModel::Replicates) => {
+            Some(Discrepancy::without_curve(ShownBy::Repeats, after.clone()))
+        }
+        None if is_contradicted => Some(Discrepancy::without_curve(ShownBy::StatedNoise, after.clone())),
+        None if is_too_much => Some(Discrepancy::without_curve(ShownBy::Size, after.clone())),
+        None if are_many => Some(Discrepancy::without_curve(ShownBy::Suspects, after.clone())),
+        None if folded.is_implausible(longest) => {
+            Some(Discrepancy::without_curve(ShownBy::Numbers, folded.response(longest)))
+        }
+        None => None,
+    };
     let coverage_factor = student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96);
     let worth = longest.background_worth();
     let nominal = match worth > WORTH_SAYING {
@@ -164,6 +152,26 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     }
 }
 
+/// What the curve of the `longer` hypothesis says beside what is `predicted` without it; what the
+/// calibration would take up of it is not left.
+fn described(
+    model: &Linearised<'_>,
+    search: &Search,
+    evidence: &Evidence,
+    longer: &Hypothesis,
+    predicted: &DVector<f64>,
+) -> Discrepancy {
+    let shape = search.predicted(longer, evidence, &model.response(&longer.terms)) - predicted;
+    let curve = longer.terms.last();
+    Discrepancy {
+        candidate: curve.map(|curve| curve.candidate),
+        location: curve.map(|curve| model.location(curve)),
+        shown_by: ShownBy::Curve,
+        rms: rms(&shape),
+        shape,
+    }
+}
+
 /// True where neighbours of a run are far off to one side: so many that they are no single ones, or
 /// the run as a whole.
 fn are_together(evidence: &Evidence, suspects: &[Suspect]) -> bool {
@@ -182,106 +190,6 @@ fn are_together(evidence: &Evidence, suspects: &[Suspect]) -> bool {
 /// Of so many data that many may be far off by themselves: a tenth, three at least.
 fn suspects_at_most(count: usize) -> usize {
     (count / 10).max(3)
-}
-
-/// A hypothesis without physics that held-out data do not confirm: where they are predicted no
-/// worse without it, nor without it and another one that it undoes, it has no name. What happened
-/// once says nothing of other data. Nor do they speak against an effect in whose place the numbers
-/// of the file would be as far off as they cannot be: these predict as well as it does.
-///
-/// Where a curve would then be left that is less likely than what it takes the place of, by the
-/// odds of a name, the names stay: something is there, and this is likelier.
-///
-/// Nor has a name what most searches without a fold do not find again, where these predict no
-/// better than nothing: something is there, and not the same to all of them.
-fn confirmed(
-    model: &Linearised<'_>,
-    search: &Search,
-    folded: &Folded,
-    hypothesis: Hypothesis,
-    before_that: Option<DiscrepancyModel>,
-    held_out: Option<&HeldOut>,
-) -> (Hypothesis, Option<DiscrepancyModel>) {
-    let Some(held_out) = held_out else { return (hypothesis, before_that) };
-    let needless: Vec<&[Theme]> =
-        held_out.losses_together().filter(|(_, loss)| *loss <= 0.0).map(|(themes, _)| themes).collect();
-    let takes_numbers_place = |own: Theme| {
-        let is_other = |term: &&Term| Theme::new(&model.candidates()[term.candidate]) != own;
-        let others: Vec<Term> = hypothesis.terms.iter().filter(is_other).cloned().collect();
-        folded.is_implausible(&search.fit(&others)) && !folded.is_implausible(&hypothesis)
-    };
-    let is_confirmed = |term: &Term| {
-        let candidate = &model.candidates()[term.candidate];
-        let own = Theme::new(candidate);
-        let is_needed =
-            held_out.independent_loss(own) > 0.0 && !needless.iter().any(|themes| themes.contains(&own));
-        candidate.effect.kind == Kind::Event || is_needed || takes_numbers_place(own)
-    };
-    let is_found_again = |term: &Term| {
-        let candidate = &model.candidates()[term.candidate];
-        let found = held_out.found(model.candidates(), Theme::new(candidate));
-        is_reproduced(candidate.effect.kind, held_out.gain, found)
-    };
-    let again: Vec<Term> = hypothesis.terms.iter().filter(|term| is_found_again(term)).cloned().collect();
-    if again.len() < hypothesis.terms.len() {
-        let shorter = search.fit(&again);
-        if let Some(left_over) = search.remains(&shorter) {
-            return (shorter, Some(left_over));
-        }
-    }
-    let kept: Vec<Term> = hypothesis.terms.iter().filter(|term| is_confirmed(term)).cloned().collect();
-    if kept.len() == hypothesis.terms.len() {
-        return (hypothesis, before_that);
-    }
-    let shorter = search.fit(&kept);
-    let left_over = search.remains(&shorter);
-    let is_likelier = |longer: &Hypothesis| hypothesis.log_probability > longer.log_probability + NAMED.ln();
-    if let Some(DiscrepancyModel::Curve(longer)) = &left_over
-        && before_that.is_none()
-        && is_likelier(longer)
-    {
-        return (hypothesis, None);
-    }
-    (shorter, left_over)
-}
-
-/// True of what happened once, of what predicts held-out data, and of what more than half of the
-/// searches without a fold find again.
-fn is_reproduced(kind: Kind, gain: f64, (found, of): (usize, usize)) -> bool {
-    kind != Kind::Physics || gain > 0.0 || 2 * found > of
-}
-
-/// A hypothesis without effects of which, with all else that may be there, nothing is as good an
-/// estimate as any other: the curve beside it may be as well, or zeros that differ from run to run.
-fn apart_from_nothing(
-    model: &Linearised<'_>,
-    search: &Search,
-    hypothesis: Hypothesis,
-    left_over: Option<DiscrepancyModel>,
-) -> (Hypothesis, Option<DiscrepancyModel>) {
-    let beside = beside(&left_over);
-    let coverage_factor = coverage_factor_of(search, &hypothesis);
-    let is_apart = |position: &usize| {
-        let candidate = &model.candidates()[hypothesis.terms[*position].candidate];
-        let estimates = estimates(model, search, &hypothesis, *position, beside, coverage_factor);
-        let parameters = estimates.iter().zip(&candidate.parameters);
-        let is_event_beside_curve = candidate.effect.kind == Kind::Event && beside.is_some();
-        is_event_beside_curve
-            || parameters.into_iter().any(|(own, p)| p.neutral < own.low || p.neutral > own.high)
-    };
-    let kept: Vec<usize> = (0..hypothesis.terms.len()).filter(is_apart).collect();
-    let terms: Vec<Term> = kept.iter().map(|&position| hypothesis.terms[position].clone()).collect();
-    if terms.len() == hypothesis.terms.len() {
-        return (hypothesis, left_over);
-    }
-    let shorter = search.fit(&terms);
-    // where nothing but the curve would be left, or nothing but the effect, it is better named than
-    // not
-    match (search.remains(&shorter), beside.is_some()) {
-        (Some(rest), true) => (shorter, Some(rest)),
-        (None, false) => (shorter, None),
-        _ => (hypothesis, left_over),
-    }
 }
 
 /// What each covariate shows of the findings that are seen along it, beside all others.
@@ -314,93 +222,4 @@ fn noise_test(stated: Option<f64>, estimated: f64, degrees_of_freedom: f64) -> N
         chi_squared_survival(square, degrees_of_freedom).ok()
     });
     NoiseTest { stated, estimated, p_value }
-}
-
-/// Parts as they are reported, the strongest first: the waves of one gear, what one knock did to
-/// each channel, all misread poses, are one finding. `base` is the root mean square that the base
-/// model leaves.
-fn findings(
-    model: &Linearised<'_>,
-    search: &Search,
-    hypothesis: &Hypothesis,
-    held_out: Option<&HeldOut>,
-    base: f64,
-    parts: Vec<(Theme, FindingPart)>,
-) -> Vec<Finding> {
-    let mut findings: Vec<(Theme, Finding)> = Vec::new();
-    for (theme, part) in parts {
-        let effect = model.candidates()[part.term.candidate].effect;
-        let location = part.location.place();
-        let is_same = |(_, known): &&mut (Theme, Finding)| {
-            known.effect == effect
-                && match effect.reported {
-                    Reported::Alone => false,
-                    Reported::ByPlace => known.location == location,
-                    Reported::ByRow => known.location.is_after_row_of(&location),
-                    Reported::Together => true,
-                }
-        };
-        match findings.iter_mut().find(is_same) {
-            Some((_, known)) => {
-                if effect.reported == Reported::Together {
-                    known.location = known.location.clone().and(location);
-                }
-                known.p_value = known.p_value.min(part.p_value);
-                known.parts.push(part);
-            }
-            None => {
-                findings.push((theme, Finding::from_part(effect, location, Vec::new(), part)));
-            }
-        }
-    }
-    for (theme, finding) in &mut findings {
-        finding.explains = match &finding.parts[..] {
-            [part] => part.explains,
-            parts => {
-                let is_other = |term: &&Term| !parts.iter().any(|part| part.term.candidate == term.candidate);
-                let others: Vec<Term> = hypothesis.terms.iter().filter(is_other).cloned().collect();
-                explained(search, &search.fit(&others), hypothesis)
-            }
-        };
-        finding.estimates = model.estimates(&finding.parts, hypothesis);
-        finding.rivals = finding.parts.iter().flat_map(|part| part.rivals.clone()).collect();
-        finding.rivals.sort_by(|a, b| a.odds.total_cmp(&b.odds));
-        finding.found_in_folds = held_out.map(|held_out| held_out.found(model.candidates(), *theme));
-        finding.held_out_loss = held_out.map(|held_out| held_out.loss(*theme));
-        finding.description = model.describe(finding);
-    }
-    let mut findings: Vec<Finding> = findings.into_iter().map(|(_, finding)| finding).collect();
-    // by what held-out data lose without it; of what happened once they know nothing
-    let strength = |finding: &Finding| {
-        let explained = (finding.explains / base.max(f64::MIN_POSITIVE)).powi(2);
-        match finding.kind() {
-            Kind::Event => explained,
-            Kind::Physics | Kind::Mistake => finding.held_out_loss.unwrap_or(explained),
-        }
-    };
-    // a mistake is undone before anything else is believed
-    let is_physics = |finding: &Finding| finding.kind() != Kind::Mistake;
-    findings.sort_by(|a, b| is_physics(a).cmp(&is_physics(b)).then(strength(b).total_cmp(&strength(a))));
-    findings
-}
-
-/// The hypothesis with what it leaves unexplained beside it.
-fn beside(left_over: &Option<DiscrepancyModel>) -> Option<&Hypothesis> {
-    match left_over {
-        Some(DiscrepancyModel::Curve(longer)) => Some(longer),
-        _ => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_neither_predicts_nor_comes_back_has_no_name() {
-        assert!(!is_reproduced(Kind::Physics, -0.1, (2, 4)));
-        assert!(is_reproduced(Kind::Physics, -0.1, (3, 4)));
-        assert!(is_reproduced(Kind::Physics, 0.01, (0, 4)));
-        assert!(is_reproduced(Kind::Event, -0.1, (0, 4)) && is_reproduced(Kind::Mistake, -0.1, (0, 4)));
-    }
 }

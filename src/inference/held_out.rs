@@ -4,14 +4,18 @@
 //! What a theme (an effect; in joints, at those joints) is worth is found in the same folds: the
 //! hypothesis of all data is fitted to the others with and without it, and predicts the fold.
 
+pub(in crate::inference) mod compared;
+pub(in crate::inference) mod confirmed;
+pub(in crate::inference) mod sessions;
+
 use nalgebra::DVector;
 
-use super::linearised::Linearised;
-use super::pruning::infer;
-use super::search::Search;
-use super::selection::{APART, Pairs};
-use super::whitening::Whitening;
-use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Location, Term};
+use crate::inference::columns::linearised::Linearised;
+use crate::inference::noise::whitening::Whitening;
+use crate::inference::search::Search;
+use crate::inference::search::pruning::infer;
+use crate::inference::search::selection::{APART, Pairs};
+use crate::inference::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Term};
 use crate::parallel::in_parallel;
 use crate::statistics::{Random, percentile_interval};
 
@@ -23,6 +27,7 @@ const DRAWS: usize = 1000;
 
 /// Errors of data that the model had not seen.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct HeldOut {
     /// Root mean square of what the base model leaves of held-out data.
     pub before: f64,
@@ -53,12 +58,7 @@ pub struct Theme {
 impl Theme {
     /// Of a candidate.
     pub fn new(candidate: &Candidate) -> Theme {
-        let joints = match &candidate.location {
-            Location::Joint { joint, .. } => Some([*joint, *joint]),
-            Location::Coupling { from, to } => Some([*from, *to]),
-            _ => None,
-        };
-        Theme { effect: candidate.effect, joints }
+        Theme { effect: candidate.effect, joints: candidate.location.joints() }
     }
 }
 
@@ -72,7 +72,7 @@ impl HeldOut {
 
     /// Share of the squares of the errors before that comes back without a theme.
     pub fn loss(&self, theme: Theme) -> f64 {
-        self.losses.iter().filter(|(of, _)| *of == [theme]).map(|(_, loss)| loss.plain).sum()
+        self.losses.iter().filter(|(themes, _)| *themes == [theme]).map(|(_, loss)| loss.plain).sum()
     }
 
     /// The same of errors that are independent, (e'ᵀΣ⁻¹e' − eᵀΣ⁻¹e)/e₀ᵀΣ⁻¹e₀. The zero of a
@@ -94,7 +94,7 @@ impl HeldOut {
     }
 
     fn independent_loss_of(&self, themes: &[Theme]) -> f64 {
-        self.losses.iter().filter(|(of, _)| of == themes).map(|(_, loss)| loss.independent).sum()
+        self.losses.iter().filter(|(known, _)| known == themes).map(|(_, loss)| loss.independent).sum()
     }
 }
 

@@ -16,6 +16,10 @@
 //! is therefore κ times as wide as its usual size, where κ is what makes the evidence largest
 //! (empirical Bayes, by expectation–maximisation), at the price of ½·(log₁₀ κ)².
 
+pub(in crate::inference) mod fit;
+pub(in crate::inference) mod moments;
+pub(in crate::inference) mod priors;
+
 #[cfg(test)]
 mod tests;
 

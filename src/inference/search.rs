@@ -1,22 +1,31 @@
 //! Hypotheses: fitted, scored, and asked what would make them more probable.
 //!
 //! A hypothesis is a few candidates that act together. Its probability is that of the recording
-//! ([`super::score`]) times its prior ([`super::priors`]).
+//! ([`crate::inference::score`]) times its prior ([`crate::inference::score::priors`]).
+
+pub(in crate::inference) mod findings;
+pub(in crate::inference) mod hidden_in_correlation;
+pub(in crate::inference) mod hidden_in_groups;
+pub(in crate::inference) mod misread;
+pub(in crate::inference) mod pairs;
+pub(in crate::inference) mod parts;
+pub(in crate::inference) mod pruning;
+pub(in crate::inference) mod selection;
 
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::gram_cache::GramCache;
-use super::lack_of_fit::{LackOfFit, Replicates};
-use super::linearised::Linearised;
-use super::memory::Memory;
-use super::part_products::Training;
-use super::priors::priors;
-use super::score::ColumnBlock;
-use super::table::Table;
-use super::whitening::Whitening;
-use super::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Term};
+use crate::inference::columns::fit_cache::FitCache;
+use crate::inference::columns::gram_cache::GramCache;
+use crate::inference::columns::linearised::Linearised;
+use crate::inference::columns::part_products::Training;
+use crate::inference::columns::table::Table;
+use crate::inference::noise::lack_of_fit::{LackOfFit, Replicates};
+use crate::inference::noise::whitening::Whitening;
+use crate::inference::score::ColumnBlock;
+use crate::inference::score::priors::priors;
+use crate::inference::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Term};
 use crate::linalg::transposed_product;
 use crate::parallel::in_parallel_outside_of_jobs;
 
@@ -54,8 +63,8 @@ pub struct Search<'a> {
     /// What repeats have in common; `None` without repeats.
     replicates: Option<Replicates>,
     /// What was fitted and asked before.
-    pub(super) fitted: Memory<Hypothesis>,
-    added: Memory<Arc<Vec<f64>>>,
+    pub(super) fitted: FitCache<Hypothesis>,
+    added: FitCache<Arc<Vec<f64>>>,
 }
 
 impl<'a> Search<'a> {
@@ -99,8 +108,8 @@ impl<'a> Search<'a> {
             beside_background,
             prior: priors(model.candidates()),
             replicates: Replicates::new(&whitening, evidence),
-            fitted: Memory::new(|fitted| fitted.covariance.len() + fitted.background_covariance.len()),
-            added: Memory::new(|added| added.len()),
+            fitted: FitCache::new(|fitted| fitted.covariance.len() + fitted.background_covariance.len()),
+            added: FitCache::new(|added| added.len()),
             model,
             evidence,
             whitening,

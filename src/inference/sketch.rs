@@ -16,14 +16,14 @@
 
 use nalgebra::DVector;
 
-use super::background::folded;
-use super::correlated_noise::CorrelatedNoise;
-use super::linearised::Linearised;
-use super::pruning::{infer, settled};
-use super::score::Moments;
-use super::selection::{DiscrepancyModel, Pairs};
-use super::whitening::Whitening;
-use super::{Evidence, ForwardModel, Hypothesis};
+use crate::inference::columns::background::folded;
+use crate::inference::columns::linearised::Linearised;
+use crate::inference::noise::correlated_noise::CorrelatedNoise;
+use crate::inference::noise::whitening::Whitening;
+use crate::inference::score::Moments;
+use crate::inference::search::pruning::{infer, settled};
+use crate::inference::search::selection::{DiscrepancyModel, Pairs};
+use crate::inference::{Evidence, ForwardModel, Hypothesis};
 use crate::linalg::transposed_product;
 use crate::parallel::in_parallel;
 

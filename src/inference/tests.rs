@@ -2,10 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::linearised::Linearised;
-use super::search::Search;
-use super::selection::{DiscrepancyModel, Pairs};
 use super::*;
+use crate::inference::columns::linearised::Linearised;
+use crate::inference::search::Search;
+use crate::inference::search::selection::{DiscrepancyModel, Pairs};
 use crate::statistics::Random;
 
 /// 5 trials of 16 data over x = 0 … 1.

@@ -181,7 +181,7 @@ impl Basis {
             false => "",
         };
         format!(
-            "At {}{aligned}. Noise {}; repeatability {} µm{clamps}{instrument}. Errors that no parameter of the calibration has \
+            "At {}{aligned}. {}; repeatability {} µm{clamps}{instrument}. Errors that no parameter of the calibration has \
              (gears, play, warmth) are not in the forecast: diagnose finds them in a recording.{narrow}",
             self.unseen,
             self.budget.noise_source,

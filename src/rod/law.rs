@@ -10,12 +10,33 @@
 //! dx, dy, dz   to what a sensor shows                                  µm
 //! ```
 
+use std::fmt;
+
 use crate::expression::{Expression, Fault};
+use crate::spatial::Axis;
 
 /// 1 on the way up, −1 on the way down, in formulas.
 pub(crate) const SIDE: &str = "side";
 /// A number that was read again is no other.
 const BEYOND: f64 = 1.0 + 1e-9;
+
+/// Where a law acts.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RodLawPlace {
+    /// The rod as a whole.
+    Rod,
+    /// The clamp of the load.
+    Clamp,
+    /// The rod's root, at the flange.
+    Root,
+    /// The slide that guides the load.
+    Slide,
+    /// The sensor of an axis: `dy`.
+    Sensor(Axis),
+    /// The joint of this name.
+    Joint(String),
+}
 
 /// What a law is a function of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,7 +92,7 @@ impl MemoryConstant {
     }
 
     /// `r > 0`, `n from 1 to 8`.
-    pub fn words(&self) -> String {
+    pub fn description(&self) -> String {
         match self.range {
             None => format!("{} > 0", self.name),
             Some((low, high)) => format!("{} from {low} to {high}", self.name),
@@ -98,8 +119,8 @@ pub struct LawConstant {
 /// A law of a rod's file.
 #[derive(Debug, Clone)]
 pub struct RodLaw {
-    /// `rod`, `clamp`, `root`, `slide`, a joint's name, `dx`, `dy` or `dz`.
-    pub place: String,
+    /// Where it acts.
+    pub place: RodLawPlace,
     /// What it is a function of.
     pub variable: LawVariable,
     /// In the variable, `side` and the constants; see the [module](self) for its unit.
@@ -137,6 +158,58 @@ pub(crate) fn should_show(showed: f64, law: impl Fn(f64) -> f64) -> f64 {
     if y.is_finite() { y } else { showed }
 }
 
+impl RodLawPlace {
+    /// The places that every rod has; its joints are places too.
+    pub const OF_EVERY_ROD: [RodLawPlace; 7] = [
+        RodLawPlace::Rod,
+        RodLawPlace::Clamp,
+        RodLawPlace::Root,
+        RodLawPlace::Slide,
+        RodLawPlace::Sensor(Axis::X),
+        RodLawPlace::Sensor(Axis::Y),
+        RodLawPlace::Sensor(Axis::Z),
+    ];
+
+    /// The place that a file calls so: one that every rod has, or else the joint of this name.
+    pub fn named(name: &str) -> RodLawPlace {
+        let of_every_rod = RodLawPlace::OF_EVERY_ROD.into_iter().find(|place| place.to_string() == name);
+        of_every_rod.unwrap_or_else(|| RodLawPlace::Joint(name.to_owned()))
+    }
+
+    /// What a law does there to the rod's tip is known wherever the rod is; what it does at clamp,
+    /// slide and sensors stays with the rig.
+    pub fn is_of_rod(&self) -> bool {
+        match self {
+            RodLawPlace::Rod | RodLawPlace::Root | RodLawPlace::Joint(_) => true,
+            RodLawPlace::Clamp | RodLawPlace::Slide | RodLawPlace::Sensor(_) => false,
+        }
+    }
+
+    /// In sentences: `the root`, `sleeve-a`.
+    pub fn spoken(&self) -> String {
+        match self {
+            RodLawPlace::Rod | RodLawPlace::Clamp | RodLawPlace::Root | RodLawPlace::Slide => {
+                format!("the {self}")
+            }
+            RodLawPlace::Sensor(_) | RodLawPlace::Joint(_) => self.to_string(),
+        }
+    }
+}
+
+/// As in files.
+impl fmt::Display for RodLawPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            RodLawPlace::Rod => f.write_str("rod"),
+            RodLawPlace::Clamp => f.write_str("clamp"),
+            RodLawPlace::Root => f.write_str("root"),
+            RodLawPlace::Slide => f.write_str("slide"),
+            RodLawPlace::Sensor(axis) => write!(f, "d{axis}"),
+            RodLawPlace::Joint(name) => f.write_str(name),
+        }
+    }
+}
+
 impl LawVariable {
     /// All of them.
     pub const ALL: [LawVariable; 7] = [
@@ -163,7 +236,7 @@ impl LawVariable {
     }
 
     /// In sentences.
-    pub fn words(self) -> &'static str {
+    pub fn description(self) -> &'static str {
         match self {
             LawVariable::Load => "load",
             LawVariable::AlongPositive => "load along the positive axes",
@@ -197,13 +270,13 @@ impl LawVariable {
     }
 
     /// True where a law of this variable may act at a place.
-    pub fn is_at(self, place: &str) -> bool {
+    pub fn is_at(self, place: &RodLawPlace) -> bool {
         match place {
-            "rod" => !matches!(self, LawVariable::Moment | LawVariable::Reading),
-            "clamp" => self == LawVariable::Load,
-            "slide" => self == LawVariable::SinceChange,
-            "dx" | "dy" | "dz" => self == LawVariable::Reading,
-            _ => self == LawVariable::Moment,
+            RodLawPlace::Rod => !matches!(self, LawVariable::Moment | LawVariable::Reading),
+            RodLawPlace::Clamp => self == LawVariable::Load,
+            RodLawPlace::Slide => self == LawVariable::SinceChange,
+            RodLawPlace::Sensor(_) => self == LawVariable::Reading,
+            RodLawPlace::Root | RodLawPlace::Joint(_) => self == LawVariable::Moment,
         }
     }
 }
@@ -241,7 +314,7 @@ impl RodLaw {
     /// # Errors
     /// A [`Fault`] of the formula with its place in it.
     pub fn new(
-        place: impl Into<String>,
+        place: RodLawPlace,
         variable: LawVariable,
         formula: impl Into<String>,
         constants: Vec<LawConstant>,
@@ -251,7 +324,6 @@ impl RodLaw {
         let names = [variable.symbol(), SIDE].into_iter();
         let names: Vec<&str> = names.chain(constants.iter().map(|own| own.name.as_str())).collect();
         let expression = Expression::new(&formula, &names)?;
-        let place = place.into();
         Ok(RodLaw { place, variable, formula, memory: None, constants, range, source: None, expression })
     }
 
@@ -270,7 +342,7 @@ impl RodLaw {
     /// What a law of the rod does to its tip is known wherever the rod is; a law of the rig (clamp,
     /// slide, sensors) stays there.
     pub fn is_of_rod(&self) -> bool {
-        !matches!(self.place.as_str(), "clamp" | "slide" | "dx" | "dy" | "dz")
+        self.place.is_of_rod()
     }
 
     /// True where the load that hangs now is all it takes to know what the law does.
@@ -282,22 +354,22 @@ impl RodLaw {
 
     /// Unit of what the formula adds, for people.
     pub fn unit(&self) -> &'static str {
-        match self.place.as_str() {
-            "rod" if self.variable == LawVariable::Load => "N",
-            "rod" | "slide" => "%",
-            "clamp" | "dx" | "dy" | "dz" => "µm",
-            _ => "µrad",
+        match &self.place {
+            RodLawPlace::Rod if self.variable == LawVariable::Load => "N",
+            RodLawPlace::Rod | RodLawPlace::Slide => "%",
+            RodLawPlace::Clamp | RodLawPlace::Sensor(_) => "µm",
+            RodLawPlace::Root | RodLawPlace::Joint(_) => "µrad",
         }
     }
 
     /// Symbol of what the formula adds to.
     pub fn result(&self) -> &'static str {
-        match self.unit() {
-            "N" => "ΔF",
-            "%" => "Δu/u",
-            "µrad" => "Δθ",
-            _ if self.place == "clamp" => "Δu",
-            _ => "Δy",
+        match &self.place {
+            RodLawPlace::Rod if self.variable == LawVariable::Load => "ΔF",
+            RodLawPlace::Rod | RodLawPlace::Slide => "Δu/u",
+            RodLawPlace::Clamp => "Δu",
+            RodLawPlace::Sensor(_) => "Δy",
+            RodLawPlace::Root | RodLawPlace::Joint(_) => "Δθ",
         }
     }
 
@@ -306,38 +378,25 @@ impl RodLaw {
     pub fn is_beyond(&self, x: f64) -> bool {
         x > self.range.1 * BEYOND || x < self.range.0.min(0.0) * BEYOND
     }
+}
 
-    /// `ΔF = k*max(F - F_0, 0) in N at the rod, k = −0.34 N/N, F_0 = 7.7 N, for F from 1 to 10 N`.
-    pub fn words(&self) -> String {
-        let (low, high) = self.range;
+/// `ΔF = k*max(F - F_0, 0) in N at the rod, k = −0.34 N/N, F_0 = 7.7 N, for F from 1 to 10 N`.
+impl fmt::Display for RodLaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let significant = |x: f64| crate::units::significant(x, 3);
-        let memory = match self.memory {
+        write!(f, "{} = {} in {} at {}", self.result(), self.formula, self.unit(), self.place.spoken())?;
+        for own in &self.constants {
+            let number = format!(", {} = {} {}", own.name, significant(own.value), own.unit);
+            f.write_str(number.trim_end())?;
+        }
+        let (symbol, unit, (low, high)) = (self.variable.symbol(), self.variable.unit(), self.range);
+        write!(f, ", for {symbol} from {} to {} {unit}", significant(low), significant(high))?;
+        f.write_str(match self.memory {
             Some(LawMemory::Stop) => ", of what a play leaves of it",
             Some(LawMemory::BoucWen) => ", of what a Bouc–Wen loop makes of it",
             Some(LawMemory::Lag) => ", of what it lacks of its lagged self",
             None => "",
-        };
-        let number = |own: &LawConstant| format!(", {} = {} {}", own.name, significant(own.value), own.unit);
-        let numbers: String = self.constants.iter().map(|own| number(own).trim_end().to_owned()).collect();
-        format!(
-            "{} = {} in {} at {}{numbers}, for {} from {} to {} {}{memory}",
-            self.result(),
-            self.formula,
-            self.unit(),
-            self.at_place(),
-            self.variable.symbol(),
-            significant(low),
-            significant(high),
-            self.variable.unit()
-        )
-    }
-
-    /// `the root`, `sleeve-a`.
-    pub fn at_place(&self) -> String {
-        match self.place.as_str() {
-            "rod" | "clamp" | "root" | "slide" => format!("the {}", self.place),
-            named => named.to_owned(),
-        }
+        })
     }
 }
 
@@ -367,15 +426,27 @@ mod tests {
     }
 
     #[test]
+    fn a_place_is_named_as_it_is_written() {
+        for place in RodLawPlace::OF_EVERY_ROD {
+            assert_eq!(RodLawPlace::named(&place.to_string()), place);
+        }
+        assert_eq!(RodLawPlace::named("sleeve"), RodLawPlace::Joint("sleeve".into()));
+    }
+
+    #[test]
     fn a_law_is_its_formula() {
         let constants = vec![constant("k", -0.5), constant("F_0", 4.0)];
-        let law = RodLaw::new("rod", LawVariable::Load, "k*max(F - F_0, 0)", constants, (1.0, 10.0)).unwrap();
+        let law =
+            RodLaw::new(RodLawPlace::Rod, LawVariable::Load, "k*max(F - F_0, 0)", constants, (1.0, 10.0))
+                .unwrap();
         assert_eq!((law.at(3.0, 1.0), law.at(10.0, 1.0), law.unit()), (0.0, -3.0, "N"));
         assert!(law.is_of_rod() && law.is_static());
         assert!(!law.is_beyond(0.5) && law.is_beyond(10.1) && law.is_beyond(-0.1));
-        let sided = RodLaw::new("clamp", LawVariable::Load, "2*side*F", Vec::new(), (1.0, 10.0)).unwrap();
+        let sided =
+            RodLaw::new(RodLawPlace::Clamp, LawVariable::Load, "2*side*F", Vec::new(), (1.0, 10.0)).unwrap();
         assert!(!sided.is_of_rod() && !sided.is_static());
-        let fault = RodLaw::new("rod", LawVariable::Load, "k*M", Vec::new(), (0.0, 1.0)).unwrap_err();
+        let fault =
+            RodLaw::new(RodLawPlace::Rod, LawVariable::Load, "k*M", Vec::new(), (0.0, 1.0)).unwrap_err();
         assert_eq!(fault.found, "\"k\"");
     }
 }

@@ -45,7 +45,7 @@ fn mukca_s_places_are_predicted_as_well_as_by_mukca() {
         assert!(rms <= theirs, "{name}: {rms:.4} mm, MUKCa has {theirs}");
         ours.push(rms);
     }
-    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
+    let mean = |errors: &[f64]| errors.iter().sum::<f64>() / errors.len() as f64;
     let theirs = MUKCA.map(|(_, theirs)| theirs);
     assert!(mean(&ours) < mean(&theirs), "{} {}", mean(&ours), mean(&theirs));
 }

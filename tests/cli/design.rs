@@ -102,7 +102,7 @@ fn designs_are_ranked_by_the_accuracy_that_a_robot_will_have() {
     assert!(ranked.len() > 3 && ranked.iter().any(|one| one["rod"] == "5#"), "{ranked:?}");
     let rms = |one: &serde_json::Value, mode: &str| {
         let modes = one["modes"].as_array().unwrap();
-        modes.iter().find(|of| of["mode"] == mode).unwrap()["rms"].as_f64().unwrap()
+        modes.iter().find(|row| row["mode"] == mode).unwrap()["rms"].as_f64().unwrap()
     };
     assert!(ranked.windows(2).all(|two| rms(&two[0], "fea") <= rms(&two[1], "fea")));
     // what is compensated is as good as a rigid rod; what is not is worse
@@ -143,7 +143,7 @@ fn where_nothing_fits_it_says_what_would() {
 }
 
 #[test]
-fn a_wish_that_cannot_be_granted_is_refused_and_nothing_is_written() {
+fn an_empty_design_space_is_refused_and_nothing_is_written() {
     let sandbox = sandbox();
     let refused = |design: &str, line: &str, expected: &str| {
         sandbox.write("design.toml", design);
@@ -194,7 +194,7 @@ fn a_search_that_was_killed_goes_on_and_says_the_same() {
     running.kill().unwrap();
     running.wait().unwrap();
     assert_eq!(sandbox.run(&line.join(" ")).succeeded().stdout, whole);
-    // what is done is done, and another wish is another search
+    // what is done is done, and another design space is another search
     assert_eq!(sandbox.run(&line.join(" ")).succeeded().stdout, whole);
     sandbox.write("design.toml", &many.replace("= 900", "= 800"));
     let refused = sandbox.run(&line.join(" "));

@@ -148,7 +148,7 @@ fn what_is_applied_makes_the_robot_as_accurate_as_promised() {
     }
     let errors = || {
         let json = sandbox.run("calibrate made/campaign.toml --json").json();
-        ["residual", "validation"].map(|of| json[of]["mean_um"].as_f64().unwrap())
+        ["residual", "validation"].map(|poses| json[poses]["mean_um"].as_f64().unwrap())
     };
     let before = errors();
     sandbox.write("made/robot.toml", &sandbox.read("out/calibrated.toml"));

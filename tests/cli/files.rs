@@ -16,8 +16,8 @@ fn a_report_is_a_page_with_its_pictures_tables_and_result() {
         let own = |name: &'static str| pages.iter().filter(move |page| **page == name);
         assert_eq!((own("index").count(), pages.len() > 1), (1, *line == *"demo"), "{line}");
         let plain = |name: &str| -> String {
-            let of = pages.iter().find_map(|page| name.strip_prefix(page)?.strip_prefix('-'));
-            of.unwrap_or(name).to_owned()
+            let inner = pages.iter().find_map(|page| name.strip_prefix(page)?.strip_prefix('-'));
+            inner.unwrap_or(name).to_owned()
         };
         let known = |name: &&&str| {
             let name = &plain(name);

@@ -1,9 +1,8 @@
 //! README.md and docs/ promise nothing that does not run.
 
 use std::path::Path;
-use std::process::Stdio;
 
-use super::Sandbox;
+use super::{Sandbox, ran};
 
 /// The commands in the fenced blocks of `markdown`, as they would be typed with `rodcal` on the
 /// path.
@@ -51,41 +50,6 @@ rodcal outside
     ];
     let found: Vec<String> = commands(markdown).iter().map(|line| line.trim().to_owned()).collect();
     assert_eq!(found, expected);
-}
-
-/// A shell runs the lines, as it would for their reader: comments, pipes and redirections included.
-#[cfg(unix)]
-#[test]
-fn every_command_of_the_readme_runs() {
-    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
-    let text =
-        std::fs::read_to_string(readme).expect("README.md is missing: it has to show how rodcal is used");
-    let commands = commands(&text);
-    assert!(
-        !commands.is_empty(),
-        "README.md shows no command: expected lines \"rodcal …\" or \"cargo run --release -- …\" in fenced blocks"
-    );
-    let sandbox = Sandbox::new();
-    let program = Path::new(env!("CARGO_BIN_EXE_rodcal")).parent().unwrap();
-    let mut path = vec![program.to_owned()];
-    path.extend(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()));
-    for command in commands {
-        let output = std::process::Command::new("sh")
-            .args(["-c", &command])
-            .current_dir(sandbox.path())
-            .env("PATH", std::env::join_paths(&path).unwrap())
-            .stdin(Stdio::null())
-            .output()
-            .unwrap();
-        let status = output.status.code();
-        let may_find = status == Some(1) && command.contains("diagnose");
-        assert!(
-            status == Some(0) || may_find,
-            "README.md: `{command}` ends with {status:?}\n{}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-        assert!(!output.stdout.is_empty(), "README.md: `{command}` says nothing");
-    }
 }
 
 /// What stands for a user's own files in the synopses of docs/, with the files that a test has
@@ -137,52 +101,119 @@ fn a_synopsis_becomes_a_command() {
     assert_eq!(options, ["--robust", "--json"]);
 }
 
-/// Whether one of `commands` reads what `line` writes with `--out`.
-fn is_read_by(line: &str, commands: &[String]) -> bool {
-    let directory = line.split(" --out ").nth(1).and_then(|rest| rest.split_whitespace().next());
-    directory.is_some_and(|name| commands.iter().any(|command| command.contains(&format!("{name}/"))))
+/// What a command writes by a name that it was given: a folder, a file.
+fn written(line: &str) -> Vec<&str> {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let first = match words[..] {
+        ["simulate", name, ..] | ["trial", "make", name, ..] => Some(name),
+        _ => None,
+    };
+    let options = words.windows(2).filter(|pair| ["--out", "--resume"].contains(&pair[0]));
+    first.into_iter().chain(options.map(|pair| pair[1])).collect()
 }
 
-/// Every synopsis and every command of docs/ runs, and every option that one names exists. What the
-/// README runs on the same files is not run again, unless a command further down reads what it
-/// writes.
+/// True where `line` reads what an `earlier` command writes.
+fn reads(line: &str, earlier: &str) -> bool {
+    let own = written(line);
+    let is_inside = |word: &str, name: &str| {
+        word.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+    };
+    let read = || line.split_whitespace().filter(|word| !own.contains(word));
+    written(earlier).iter().any(|name| read().any(|word| is_inside(word, name)))
+}
+
 #[test]
-fn every_command_of_the_docs_runs() {
-    let project = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let of_name = |name: &Path| commands(&std::fs::read_to_string(name).unwrap());
-    let of_readme = of_name(&project.join("README.md"));
-    let mut documents: Vec<_> =
-        std::fs::read_dir(project.join("docs")).unwrap().map(|entry| entry.unwrap().path()).collect();
-    documents.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
-    documents.sort();
-    let mut ran = 0;
-    for document in documents {
-        let sandbox = Sandbox::new();
-        let typed = of_name(&document);
-        for (synopsis, following) in typed.iter().zip(1..) {
-            // examples/regenerate.rs makes the pages of docs/; it is no command of the program
-            if synopsis.contains("--example") {
-                continue;
-            }
-            let (line, options) = concrete(synopsis);
-            let words = line.strip_prefix("rodcal").unwrap_or_default().trim();
-            let subcommands = words.split(' ').take_while(|word| word.chars().all(char::is_alphabetic));
-            let subcommands: Vec<&str> =
-                subcommands.filter(|word| !["linear", "made"].contains(word)).collect();
+fn a_command_reads_what_an_earlier_one_writes() {
+    assert!(reads("calibrate a/campaign.toml", "simulate a --rod r"));
+    assert!(reads("trial answer c", "trial make c --cases 3"));
+    assert!(reads("compare-runs reports/x/ reports/y", "calibrate q --out reports/x"));
+    assert!(!reads("rig fit r d --out reports/x", "calibrate q --out reports/x"));
+    assert!(!reads("compliance reports/xy/r.toml", "calibrate q --out reports/x"));
+}
+
+/// What would take minutes runs with less.
+const LESS: [(&str, &str); 1] = [("--cases 200", "--cases 2")];
+
+/// Runs every command of a document in its order. One that needs nothing of the others runs once in
+/// all tests (`ran`); the others share a directory.
+fn run(document: &str) -> usize {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(document);
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{document}: {e}"));
+    let sandbox = Sandbox::new();
+    let mut lines: Vec<String> = Vec::new();
+    // examples/regenerate.rs makes the pages of docs/; it is no command of the program
+    for synopsis in commands(&text).iter().filter(|line| !line.contains("--example")) {
+        let (line, options) = concrete(synopsis);
+        if synopsis.contains('[') {
+            let words = line.split(' ').skip(1).take_while(|word| word.chars().all(char::is_alphabetic));
+            let subcommands: Vec<&str> = words.filter(|word| !["linear", "made"].contains(word)).collect();
             let help = sandbox.run(&format!("{} --help", subcommands.join(" "))).succeeded().stdout;
             for option in options {
-                assert!(help.contains(&option), "{}: {synopsis}: no {option}", document.display());
+                assert!(help.contains(&option), "{document}: {synopsis}: no {option}");
             }
-            let base = line.split(" --").next().unwrap_or_default();
-            let again = of_readme.iter().any(|command| command.starts_with(base));
-            if again && !is_read_by(&line, &typed[following..]) {
-                continue;
-            }
-            sandbox.run(words).succeeded();
-            ran += 1;
         }
+        let line = LESS.iter().fold(line, |line, (whole, less)| line.replace(whole, less));
+        lines.extend(line.split(" && ").map(|one| {
+            assert!(!one.contains(['|', '>', ';', '$']), "{document}: a shell would read `{one}`");
+            one.strip_prefix("rodcal").unwrap_or(one).trim().to_owned()
+        }));
     }
-    assert!(ran >= 4, "docs/ show {ran} commands only");
+    for (k, line) in lines.iter().enumerate() {
+        let is_alone = !lines[..k].iter().any(|earlier| reads(line, earlier))
+            && !lines[k + 1..].iter().any(|later| reads(later, line));
+        let answer = if is_alone { ran(line).answer.clone() } else { sandbox.run(line) };
+        assert!(!answer.succeeded().stdout.is_empty(), "{document}: `rodcal {line}` says nothing");
+    }
+    lines.len()
+}
+
+/// The pages of docs/, by their names without `.md`; each is run by one of the tests below.
+const GUIDES: [&[&str]; 3] = [
+    &["add-an-effect", "calibrate-your-robot", "calibration", "diagnosis", "laws", "rig"],
+    &["design", "from-readings-to-compliance", "least-squares", "requirements-to-rod", "simulation"],
+    &["gallery", "trial", "why-they-disagree"],
+];
+
+fn run_guides(names: &[&str]) -> usize {
+    names.iter().map(|name| run(&format!("docs/{name}.md"))).sum()
+}
+
+#[test]
+fn every_command_of_the_readme_runs() {
+    assert!(run("README.md") > 20);
+}
+
+#[test]
+fn every_command_of_a_kept_report_runs() {
+    assert_eq!(run("reports/trial/README.md"), 3);
+}
+
+#[test]
+fn every_command_about_robots_and_rigs_runs() {
+    assert!(run_guides(GUIDES[0]) > 10);
+}
+
+#[test]
+fn every_command_about_design_runs() {
+    assert!(run_guides(GUIDES[1]) > 10);
+}
+
+#[test]
+fn every_command_of_the_gallery_and_of_trials_runs() {
+    assert!(run_guides(GUIDES[2]) > 15);
+}
+
+#[test]
+fn every_page_with_commands_is_run() {
+    let project = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for entry in std::fs::read_dir(project.join("docs")).unwrap() {
+        let path = entry.unwrap().path();
+        let Some(name) = path.file_name().and_then(|name| name.to_str()?.strip_suffix(".md")) else {
+            continue;
+        };
+        let has_commands = !commands(&std::fs::read_to_string(&path).unwrap()).is_empty();
+        assert!(!has_commands || GUIDES.concat().contains(&name), "docs/{name}.md: put it into GUIDES");
+    }
 }
 
 /// The answers that the guides quote are what the program says today: the first two sentences of

@@ -16,7 +16,7 @@ fn a_trial_is_made_answered_in_pieces_and_scored() {
     assert_eq!(sandbox.read("t/answers.jsonl").lines().count(), 3);
     let score = sandbox.run("trial score t t.key.jsonl --json").json();
     let count = |kind: &str| score[kind]["n"].as_u64().unwrap();
-    let rate = |of: &str, rate: &str| score[of][rate]["of"].as_u64().unwrap();
+    let rate = |kind: &str, rate: &str| score[kind][rate]["of"].as_u64().unwrap();
     let files = rate("mistakes", "named") + rate("suspects", "remarked");
     assert_eq!(count("clean") + count("single") + count("pairs") + count("unknown") + files, 3);
     for key in ["coverage", "gain_over_oracle", "counterfactual_over_oracle", "next_measurement_ok"] {
@@ -63,14 +63,14 @@ fn a_small_trial_is_answered_as_well_as_ever() {
     sandbox.run("trial make t --seed 20261122 --cases 16").succeeded();
     sandbox.run("trial answer t").succeeded();
     let score = sandbox.run("trial score t --json").json();
-    let count = |of: &str, key: &str| score[of][key].as_u64().unwrap();
+    let count = |kind: &str, key: &str| score[kind][key].as_u64().unwrap();
     assert_eq!((count("clean", "n"), score["failed"].as_u64()), (3, Some(0)));
     assert!(count("clean", "false_names") + count("clean", "false_unexplained") == 0, "{}", score["clean"]);
     let single = &score["single"];
     assert!(count("single", "identifiable") == 2 && count("single", "location_ok") == 2, "{single}");
     // in the class wherever something is named
-    let rate = |of: &str, rate: &str| {
-        let rate = &score[of][rate];
+    let rate = |kind: &str, rate: &str| {
+        let rate = &score[kind][rate];
         (rate["count"].as_u64().unwrap(), rate["of"].as_u64().unwrap())
     };
     assert_eq!(rate("single", "in_class_rate"), (3, 3), "{single}");

@@ -1,14 +1,14 @@
 //! A law that was proposed, written into the rod file, and read again.
 
 use rodcal::rig;
-use rodcal::rig::readings::Readings;
-use rodcal::rod::Rod;
+use rodcal::rig::readings::{Axis, Readings};
+use rodcal::rod::{Rod, RodLawPlace};
 use rodcal::units::UM;
-use rodcal_trial::rig::{Effect, Made, Order};
+use rodcal_trial::rig::{CaseSpec, Effect, SimulatedCase};
 use serde_json::Value;
 
 use super::Answer;
-use super::laws::{order, written};
+use super::laws::{spec, written};
 
 /// Diagnosed, applied, and diagnosed again: rod file and readings as `--apply` writes them.
 fn applied(rod: &str, readings: &str) -> (Answer, Answer, Rod) {
@@ -31,12 +31,13 @@ fn assert_settled(before: &Answer, after: &Answer, noise_um: f64) {
 /// Of the load: C is what the rod has besides, and `rig fit` finds it in what is left.
 #[test]
 fn a_gap_that_closes_is_written_and_read() {
-    let Made { rod, readings, .. } = order().made(&[Effect::GapCloses { load: 5.6, share: 0.7 }], 31);
+    let SimulatedCase { rod, readings, .. } =
+        spec().simulated(&[Effect::GapCloses { load: 5.6, share: 0.7 }], 31);
     let (before, after, again) = applied(&rod, &readings);
     assert_settled(&before, &after, 1.0);
     let [law] = &again.laws[..] else { panic!("{:?}", again.laws) };
-    assert_eq!((law.place.as_str(), law.unit()), ("rod", "N"));
-    assert!(law.at(4.0, 1.0) == 0.0 && (law.at(10.0, 1.0) + 0.3 * 4.4).abs() < 0.1, "{}", law.words());
+    assert_eq!((&law.place, law.unit()), (&RodLawPlace::Rod, "N"));
+    assert!(law.at(4.0, 1.0) == 0.0 && (law.at(10.0, 1.0) + 0.3 * 4.4).abs() < 0.1, "{law}");
     let fit = |rod: &Rod| {
         let readings = Readings::from_text("f", &readings).unwrap();
         rig::fit(&readings, Some(rod), &rig::Options::default()).unwrap()
@@ -53,17 +54,17 @@ fn a_gap_that_closes_is_written_and_read() {
 #[test]
 fn the_ripple_of_a_sensor_is_written_and_read() {
     let ripple = Effect::Ripple { channel: 1, amplitude: 12.0 * UM, period: 130.0 * UM, phase: 0.4 };
-    let Made { rod, readings, .. } = order().made(&[ripple], 32);
+    let SimulatedCase { rod, readings, .. } = spec().simulated(&[ripple], 32);
     let (before, after, again) = applied(&rod, &readings);
     assert_settled(&before, &after, 1.0);
-    assert_eq!(again.laws[0].place, "dy");
+    assert_eq!(again.laws[0].place, RodLawPlace::Sensor(Axis::Y));
     assert!(again.warnings.iter().any(|warning| warning.to_string().contains("the rig's")));
 }
 
 /// Of something that gives way.
 #[test]
 fn a_stop_is_written_and_read() {
-    let (rod, readings) = written(&order(), 33, |row| 25.0 * (row.load / 4.0).min(1.0));
+    let (rod, readings) = written(&spec(), 33, |row| 25.0 * (row.load / 4.0).min(1.0));
     let (before, after, _) = applied(&rod, &readings);
     assert_settled(&before, &after, 1.0);
 }
@@ -83,11 +84,11 @@ fn kind(law: &Value) -> &str {
 #[test]
 fn two_laws_are_proposed_together() {
     let ripple = Effect::Ripple { channel: 1, amplitude: 12.0 * UM, period: 130.0 * UM, phase: 0.4 };
-    let order = Order { loads: (1..=20).map(|k| 0.5 * f64::from(k)).collect(), ..order() };
+    let spec = CaseSpec { loads: (1..=20).map(|k| 0.5 * f64::from(k)).collect(), ..spec() };
     let mut found = Vec::new();
     for seed in 31..34 {
-        let Made { rod, readings, .. } =
-            order.made(&[Effect::GapCloses { load: 5.6, share: 0.7 }, ripple.clone()], seed);
+        let SimulatedCase { rod, readings, .. } =
+            spec.simulated(&[Effect::GapCloses { load: 5.6, share: 0.7 }, ripple.clone()], seed);
         let before = Answer::of(Some(&rod), &readings);
         let (law, second) = (&before.json["law"], &before.json["law"]["second"]);
         found.push((kind(law).to_owned(), kind(second).to_owned()));

@@ -1,13 +1,13 @@
 //! Physics that the library does not have gets none of its names.
 
 use rodcal::units::UM;
-use rodcal_trial::rig::{Effect, Order};
+use rodcal_trial::rig::{CaseSpec, Effect};
 
 use super::Answer;
 
-fn assert_unknown(order: &Order, effect: Effect) {
+fn assert_unknown(spec: &CaseSpec, effect: Effect) {
     let name = effect.name();
-    let answer = Answer::made(order, &[effect], 21);
+    let answer = Answer::simulated(spec, &[effect], 21);
     assert_eq!(answer.effects(), [""; 0], "{name}: {}", answer.json["headline"]);
     let unexplained = &answer.json["unexplained"];
     assert!(
@@ -18,29 +18,29 @@ fn assert_unknown(order: &Order, effect: Effect) {
 }
 
 /// Eight loads, so that a kink is no parabola.
-fn order() -> Order {
-    Order { loads: (1..=8).map(|k| 1.25 * f64::from(k)).collect(), trials: 2, ..Order::default() }
+fn spec() -> CaseSpec {
+    CaseSpec { loads: (1..=8).map(|k| 1.25 * f64::from(k)).collect(), trials: 2, ..CaseSpec::default() }
 }
 
 #[test]
 fn a_gap_that_closes() {
-    assert_unknown(&order(), Effect::GapCloses { load: 5.6, share: 0.7 });
+    assert_unknown(&spec(), Effect::GapCloses { load: 5.6, share: 0.7 });
 }
 
 #[test]
 fn the_ripple_of_a_sensor() {
     assert_unknown(
-        &order(),
+        &spec(),
         Effect::Ripple { channel: 1, amplitude: 12.0 * UM, period: 130.0 * UM, phase: 0.4 },
     );
 }
 
 #[test]
 fn a_sensor_at_its_limit() {
-    assert_unknown(&order(), Effect::Saturation { channel: 1, limit: 600.0 * UM });
+    assert_unknown(&spec(), Effect::Saturation { channel: 1, limit: 600.0 * UM });
 }
 
 #[test]
 fn a_clamp_that_is_loose_one_way() {
-    assert_unknown(&Order { both_ways: true, ..order() }, Effect::LooseClamp(0.1));
+    assert_unknown(&CaseSpec { both_ways: true, ..spec() }, Effect::LooseClamp(0.1));
 }

@@ -10,10 +10,10 @@ use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
 use rodcal::statistics::Random;
 use rodcal::units::UM;
-use rodcal_trial::rig::Order;
+use rodcal_trial::rig::CaseSpec;
 
 use super::Answer;
-use super::laws::{Row, order, written};
+use super::laws::{Row, spec, written};
 
 /// A form with its number that is not linear: what is added along the load, µm, of a row, per
 /// amplitude.
@@ -90,8 +90,8 @@ fn errors(hidden: &Hidden, seed: u64) -> Option<Errors> {
     let (amplitudes, s) = (hidden.drawn)(&mut random);
     let adds =
         |row: &Row| -> f64 { (hidden.functions)(row, s).iter().zip(&amplitudes).map(|(f, a)| f * a).sum() };
-    let recorded = order();
-    let asked = Order { loads: (1..=5).map(|k| 10.0 + f64::from(k)).collect(), noise: 0.0, ..order() };
+    let recorded = spec();
+    let asked = CaseSpec { loads: (1..=5).map(|k| 10.0 + f64::from(k)).collect(), noise: 0.0, ..spec() };
     let (rod, readings) = written(&recorded, seed, adds);
     let (_, truth) = written(&asked, seed, adds);
     let found = Answer::of(Some(&rod), &readings).found;

@@ -2,7 +2,7 @@
 
 use rodcal::parallel::in_parallel;
 use rodcal::units::UM;
-use rodcal_trial::rig::Order;
+use rodcal_trial::rig::CaseSpec;
 
 use super::Answer;
 
@@ -14,28 +14,28 @@ const SEEDS: usize = 40;
 #[test]
 fn clean_recordings_stay_clean() {
     let orders = [
-        Order { axes: vec![1, 2], ..Order::default() },
-        Order {
+        CaseSpec { axes: vec![1, 2], ..CaseSpec::default() },
+        CaseSpec {
             axes: vec![1, 2],
             unloading: false,
             trials: 4,
             noise: 3.0 * UM,
             quantum: UM,
-            ..Order::default()
+            ..CaseSpec::default()
         },
         // the display is coarser than the noise
-        Order {
+        CaseSpec {
             axes: vec![1, 2],
             unloading: false,
             all_channels: false,
             noise: UM,
             quantum: 2.0 * UM,
-            ..Order::default()
+            ..CaseSpec::default()
         },
     ];
     let wrong: Vec<String> = in_parallel(orders.len() * SEEDS, |k| {
         let seed = 1000 + k as u64;
-        let answer = Answer::made(&orders[k / SEEDS], &[], seed);
+        let answer = Answer::simulated(&orders[k / SEEDS], &[], seed);
         (!answer.is_consistent()).then(|| format!("seed {seed}: {}", answer.json["headline"]))
     })
     .into_iter()
@@ -48,15 +48,15 @@ fn clean_recordings_stay_clean() {
 /// the number is; one within what the file says is none.
 #[test]
 fn a_number_far_from_that_of_the_file_is_no_agreement() {
-    let order = Order { axes: vec![0, 1, 2], ..Order::default() };
-    let made = order.made(&[], 5);
+    let spec = CaseSpec { axes: vec![0, 1, 2], ..CaseSpec::default() };
+    let case = spec.simulated(&[], 5);
     let of_times = |times: f64| {
         let scaled = |line: &str| match line.strip_prefix("youngs_modulus_gpa = ") {
             Some(value) => format!("youngs_modulus_gpa = {}\n", times * value.parse::<f64>().unwrap()),
             None => format!("{line}\n"),
         };
-        let rod: String = made.rod.lines().map(scaled).collect();
-        Answer::of(Some(&rod), &made.readings)
+        let rod: String = case.rod.lines().map(scaled).collect();
+        Answer::of(Some(&rod), &case.readings)
     };
     let near = of_times(0.97);
     assert!(near.is_consistent() && near.json["nominal"][0]["parameter"] == "E of steel", "{}", near.json);
@@ -69,12 +69,12 @@ fn a_number_far_from_that_of_the_file_is_no_agreement() {
 #[test]
 fn zeros_that_differ_far_more_than_readings_are_said() {
     const ZEROS: [f64; 8] = [35.0, -42.0, 18.0, -27.0, 44.0, -15.0, -38.0, 24.0];
-    let order = Order { axes: vec![1, 2], trials: 4, ..Order::default() };
-    let made = order.made(&[], 1);
+    let spec = CaseSpec { axes: vec![1, 2], trials: 4, ..CaseSpec::default() };
+    let case = spec.simulated(&[], 1);
     let said = |headline: &str| headline.contains("the zeros of the runs scatter by ");
-    let clean = Answer::of_made(&made);
+    let clean = Answer::of_case(&case);
     assert!(clean.is_consistent() && !said(clean.json["headline"].as_str().unwrap()));
-    let mut lines = made.readings.lines().filter(|line| !line.starts_with('#'));
+    let mut lines = case.readings.lines().filter(|line| !line.starts_with('#'));
     let head = lines.next().unwrap();
     let columns: Vec<&str> = head.split(',').collect();
     let at = |name: &str| columns.iter().position(|column| *column == name).unwrap();
@@ -89,7 +89,7 @@ fn zeros_that_differ_far_more_than_readings_are_said() {
         columns.iter().zip(&cells).map(of_column).collect::<Vec<_>>().join(",") + "\n"
     });
     let readings = format!("{head}\n{}", shifted.collect::<String>());
-    let answer = Answer::of(Some(&made.rod), &readings);
+    let answer = Answer::of(Some(&case.rod), &readings);
     let headline = answer.json["headline"].as_str().unwrap();
     assert!(answer.is_consistent() && said(headline), "{headline}");
 }

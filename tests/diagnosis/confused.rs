@@ -5,17 +5,17 @@ use rodcal::inference::Diagnosis;
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
 use rodcal::units::UM;
-use rodcal_trial::rig::{Effect, Order};
+use rodcal_trial::rig::{CaseSpec, Effect};
 
 use super::{Answer, interval};
 
 #[test]
 fn without_unloading_friction_is_a_load_offset_as_well() {
-    let order = Order { unloading: false, ..Order::default() };
+    let spec = CaseSpec { unloading: false, ..CaseSpec::default() };
     let friction = Effect::Friction { axis: None, force: 1.0, presliding: 0.1 * UM, scatter: 0.0 };
     let tare = Effect::LoadOffset { axis: None, force: -1.0 };
     for effect in [friction, tare] {
-        let answer = Answer::made(&order, &[effect], 5);
+        let answer = Answer::simulated(&spec, &[effect], 5);
         let class = answer.class(0);
         assert!(class.contains(&"friction") && class.contains(&"load_offset"), "{class:?}");
         let next = answer.findings()[0]["next_measurement"].as_str().unwrap();
@@ -34,7 +34,9 @@ fn another_rod_is_named_before_physics_that_makes_the_given_one_like_it() {
         diagnose_among(&readings, Some(&rod(given)), &others.collect::<Vec<_>>()).unwrap().diagnosis
     };
     let own = diagnosed(5);
-    let names = |of: &Diagnosis| of.findings.iter().map(|finding| finding.effect.name).collect::<Vec<_>>();
+    let names = |diagnosis: &Diagnosis| {
+        diagnosis.findings.iter().map(|finding| finding.effect.name).collect::<Vec<_>>()
+    };
     assert_eq!(names(&own), ["friction"]);
     let six = diagnosed(6);
     assert_eq!(names(&six), ["rod_mistake", "friction"]);
@@ -46,8 +48,8 @@ fn another_rod_is_named_before_physics_that_makes_the_given_one_like_it() {
 
 #[test]
 fn at_the_tip_along_one_axis_all_softness_is_alike() {
-    let order = Order { axes: vec![1], all_channels: false, ..Order::default() };
-    let rotation = order.rotation()[0];
+    let spec = CaseSpec { axes: vec![1], all_channels: false, ..CaseSpec::default() };
+    let rotation = spec.rotation()[0];
     let effects = [
         Effect::StiffnessScale(0.85),
         Effect::SensorScale { channel: 1, factor: 1.1 },
@@ -55,7 +57,7 @@ fn at_the_tip_along_one_axis_all_softness_is_alike() {
     ];
     for effect in effects {
         let name = effect.name();
-        let answer = Answer::made(&order, &[effect], 6);
+        let answer = Answer::simulated(&spec, &[effect], 6);
         assert_eq!(answer.findings().len(), 1, "{name}: {}", answer.json["headline"]);
         let class = answer.class(0);
         for alike in ["stiffness_scale", "shear_modulus", "sensor_scale", "root_compliance"] {
@@ -68,10 +70,10 @@ fn at_the_tip_along_one_axis_all_softness_is_alike() {
 /// twice as much is none of it.
 #[test]
 fn what_is_twice_as_soft_may_still_be_a_joint_or_the_moduli() {
-    let order = Order { axes: vec![1], all_channels: false, ..Order::default() };
-    let bending = 1.5 * order.rotation()[0];
+    let spec = CaseSpec { axes: vec![1], all_channels: false, ..CaseSpec::default() };
+    let bending = 1.5 * spec.rotation()[0];
     for effect in [Effect::StiffnessScale(0.45), Effect::Root { bending, torsion: 0.0 }] {
-        let answer = Answer::made(&order, &[effect], 6);
+        let answer = Answer::simulated(&spec, &[effect], 6);
         let class = answer.class(0);
         for alike in ["stiffness_scale", "root_compliance", "joint_compliance"] {
             assert!(class.contains(&alike), "{alike} is not in {class:?}");

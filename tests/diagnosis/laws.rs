@@ -3,19 +3,19 @@
 use rodcal::report::chart::Mark;
 use rodcal::report::{self, Block};
 use rodcal::units::UM;
-use rodcal_trial::rig::{Effect, Order};
+use rodcal_trial::rig::{CaseSpec, Effect};
 use serde_json::Value;
 
 use super::Answer;
 
 /// Ten loads along y and z.
-pub fn order() -> Order {
-    Order {
+pub fn spec() -> CaseSpec {
+    CaseSpec {
         axes: vec![1, 2],
         loads: (1..=10).map(f64::from).collect(),
         unloading: false,
         noise: 1.0 * UM,
-        ..Order::default()
+        ..CaseSpec::default()
     }
 }
 
@@ -30,11 +30,11 @@ pub struct Row {
 }
 
 /// Rod and readings with `along`, µm, added to what is read along each load.
-pub fn written(order: &Order, seed: u64, along: impl Fn(&Row) -> f64) -> (String, String) {
-    let made = order.made(&[], seed);
+pub fn written(spec: &CaseSpec, seed: u64, along: impl Fn(&Row) -> f64) -> (String, String) {
+    let case = spec.simulated(&[], seed);
     let mut text = String::new();
     let mut header: Vec<&str> = Vec::new();
-    for line in made.readings.lines() {
+    for line in case.readings.lines() {
         let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
         if line.starts_with('#') || header.is_empty() {
             header = if line.starts_with('#') { header } else { line.split(',').collect() };
@@ -55,11 +55,11 @@ pub fn written(order: &Order, seed: u64, along: impl Fn(&Row) -> f64) -> (String
         cells[own] = format!("{}", reading + along(&row));
         text += &format!("{}\n", cells.join(","));
     }
-    (made.rod, text)
+    (case.rod, text)
 }
 
-fn concealed(order: &Order, seed: u64, along: impl Fn(&Row) -> f64) -> Answer {
-    let (rod, readings) = written(order, seed, along);
+fn concealed(spec: &CaseSpec, seed: u64, along: impl Fn(&Row) -> f64) -> Answer {
+    let (rod, readings) = written(spec, seed, along);
     Answer::of(Some(&rod), &readings)
 }
 
@@ -95,7 +95,7 @@ fn assert_confirmed(law: &Value) {
 
 #[test]
 fn a_gap_that_closes() {
-    let answer = Answer::made(&order(), &[Effect::GapCloses { load: 5.6, share: 0.7 }], 31);
+    let answer = Answer::simulated(&spec(), &[Effect::GapCloses { load: 5.6, share: 0.7 }], 31);
     let law = law(&answer);
     assert_eq!((&law["form"], &law["variable"]["name"]), (&"threshold with slope".into(), &"load".into()));
     let ([low, corner, high], [_, slope, _]) = (constant(law, "F_0"), constant(law, "k"));
@@ -108,7 +108,7 @@ fn a_gap_that_closes() {
 #[test]
 fn the_ripple_of_a_sensor_has_its_period() {
     let ripple = Effect::Ripple { channel: 1, amplitude: 12.0 * UM, period: 130.0 * UM, phase: 0.4 };
-    let answer = Answer::made(&order(), &[ripple], 32);
+    let answer = Answer::simulated(&spec(), &[ripple], 32);
     let law = law(&answer);
     assert_eq!((&law["form"], &law["location"]), (&"harmonic".into(), &"dy".into()), "{law}");
     let [low, _, high] = constant(law, "P");
@@ -119,7 +119,7 @@ fn the_ripple_of_a_sensor_has_its_period() {
 /// What yields until it comes to a stop, 25 µm at 4 N.
 #[test]
 fn a_part_that_comes_to_a_stop() {
-    let answer = concealed(&order(), 33, |row| 25.0 * (row.load / 4.0).min(1.0));
+    let answer = concealed(&spec(), 33, |row| 25.0 * (row.load / 4.0).min(1.0));
     let law = law(&answer);
     assert_eq!(law["variable"]["name"], "load", "{law}");
     assert!(may_be(law, "saturation"), "{law}");
@@ -130,8 +130,8 @@ fn a_part_that_comes_to_a_stop() {
 /// µm/N: felt on the way up and the way down.
 #[test]
 fn friction_that_falls_with_the_load() {
-    let order = Order { unloading: true, axes: vec![1], ..order() };
-    let answer = concealed(&order, 34, |row| -12.0 * row.side * (0.3 + 0.7 * (-row.load / 3.0).exp()));
+    let spec = CaseSpec { unloading: true, axes: vec![1], ..spec() };
+    let answer = concealed(&spec, 34, |row| -12.0 * row.side * (0.3 + 0.7 * (-row.load / 3.0).exp()));
     let said = &answer.json["law"];
     // where the library's hysteresis and friction leave nothing there is no law to look for
     if said.is_null() {
@@ -146,11 +146,11 @@ fn friction_that_falls_with_the_load() {
 /// stop or friction that these readings do not distinguish from it.
 #[test]
 fn a_clamp_that_slips_little_by_little() {
-    let slips = Effect::SlippingClamp { per_newton: 9.0 * UM, yields: 2.5, sharpness: 2.0, balance: 0.6 };
+    let slips = Effect::SlippingClamp { per_newton: 9.0 * UM, yield_load: 2.5, sharpness: 2.0, balance: 0.6 };
     let mut named = 0;
     for seed in 51..54 {
-        let order = Order { unloading: true, ..order() };
-        let answer = Answer::made(&order, std::slice::from_ref(&slips), seed);
+        let spec = CaseSpec { unloading: true, ..spec() };
+        let answer = Answer::simulated(&spec, std::slice::from_ref(&slips), seed);
         let said = &answer.json["law"];
         if said["proposed"] != true {
             continue;
@@ -180,7 +180,7 @@ fn a_clamp_that_slips_little_by_little() {
 #[test]
 fn a_contact_with_a_gap_is_never_another_exponent() {
     for seed in 35..38 {
-        let answer = concealed(&order(), seed, |row| 6.0 + 30.0 * (row.load / 10.0).powf(2.0 / 3.0));
+        let answer = concealed(&spec(), seed, |row| 6.0 + 30.0 * (row.load / 10.0).powf(2.0 / 3.0));
         let said = &answer.json["law"];
         if said["proposed"] != true {
             continue;
@@ -196,7 +196,7 @@ fn a_contact_with_a_gap_is_never_another_exponent() {
 #[test]
 fn clean_recordings_have_no_law() {
     for seed in 40..46 {
-        let answer = Answer::made(&order(), &[], seed);
+        let answer = Answer::simulated(&spec(), &[], seed);
         assert!(answer.json["law"].is_null(), "{}", answer.json["law"]);
     }
 }
@@ -205,7 +205,7 @@ fn clean_recordings_have_no_law() {
 /// has words, constants and a picture in which what was not recorded is another line.
 #[test]
 fn a_law_changes_no_finding_and_has_its_section() {
-    let answer = Answer::made(&order(), &[Effect::GapCloses { load: 5.6, share: 0.7 }], 31);
+    let answer = Answer::simulated(&spec(), &[Effect::GapCloses { load: 5.6, share: 0.7 }], 31);
     let report = report::diagnosis::rig::report(&answer.found, None);
     let section = report.sections.iter().find(|section| section.heading == "A law for it").unwrap();
     let [Block::List(_), Block::Table(table), Block::Figure(figure)] = &section.blocks[..] else {

@@ -4,11 +4,11 @@ use rodcal::diagnosis::rig::{OwnEffect, diagnose_with};
 use rodcal::report;
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
-use rodcal_trial::rig::Order;
+use rodcal_trial::rig::CaseSpec;
 use serde_json::Value;
 
 use super::interval;
-use super::laws::{Row, order, written};
+use super::laws::{Row, spec, written};
 
 /// The example of this number.
 fn example(number: usize) -> String {
@@ -18,9 +18,9 @@ fn example(number: usize) -> String {
 }
 
 /// The JSON of a recording with the effects of a file.
-fn answer(text: &str, order: &Order, along: impl Fn(&Row) -> f64) -> Value {
+fn answer(text: &str, spec: &CaseSpec, along: impl Fn(&Row) -> f64) -> Value {
     let own = OwnEffect::from_toml("mine.toml", text).unwrap();
-    let (rod, readings) = written(order, 51, along);
+    let (rod, readings) = written(spec, 51, along);
     let rod = Rod::from_toml("rod.toml", &rod).unwrap();
     let readings = Readings::from_text("readings.csv", &readings).unwrap();
     let found = diagnose_with(&readings, Some(&rod), &[], &own).unwrap();
@@ -44,7 +44,7 @@ fn assert_near(finding: &Value, name: &str, truth: f64) {
 
 #[test]
 fn a_rubber_foot() {
-    let answer = answer(&example(0), &order(), |row| 40.0 * (1.0 - (-row.load / 3.0).exp()));
+    let answer = answer(&example(0), &spec(), |row| 40.0 * (1.0 - (-row.load / 3.0).exp()));
     let foot = finding(&answer, "rubber_foot");
     assert_near(foot, "a_um", 40.0);
     assert_near(foot, "b_n", 3.0);
@@ -58,14 +58,14 @@ fn a_scale_with_a_known_pitch() {
         "y" => 9.0 * (std::f64::consts::TAU * row.predicted / 130.0).sin(),
         _ => 0.0,
     };
-    let answer = answer(&example(1), &order(), pitch);
+    let answer = answer(&example(1), &spec(), pitch);
     assert_near(finding(&answer, "pitch_of_the_scale"), "a_um", 9.0);
 }
 
 #[test]
 fn friction_that_falls() {
-    let order = Order { unloading: true, axes: vec![1], ..order() };
-    let json = answer(&example(2), &order, |row| {
+    let spec = CaseSpec { unloading: true, axes: vec![1], ..spec() };
+    let json = answer(&example(2), &spec, |row| {
         row.predicted / row.load * row.side * -1.5 * (-row.load / 3.0).exp()
     });
     let stribeck = finding(&json, "stribeck");
@@ -75,7 +75,7 @@ fn friction_that_falls() {
 
 #[test]
 fn an_effect_that_is_not_there_is_not_named() {
-    let json = answer(&example(0), &order(), |_| 0.0);
+    let json = answer(&example(0), &spec(), |_| 0.0);
     assert_eq!(json["findings"].as_array().unwrap().len(), 0, "{}", json["headline"]);
     assert_eq!(json["verdict"], "consistent");
 }
@@ -109,7 +109,7 @@ fn errors_name_line_and_column() {
         assert!(error.starts_with(expected), "{from} → {to}: {error}");
     }
     // what only rod and readings can tell
-    let (rod, readings) = written(&order(), 51, |_| 0.0);
+    let (rod, readings) = written(&spec(), 51, |_| 0.0);
     let rod = Rod::from_toml("rod.toml", &rod).unwrap();
     let readings = Readings::from_text("readings.csv", &readings).unwrap();
     let refused = |from: &str, to: &str| {
@@ -129,8 +129,8 @@ fn errors_name_line_and_column() {
 fn a_clamp_that_slips() {
     let (r, n, s) = (2.5, 2.0, 0.7);
     let state = std::cell::Cell::new((0.0, 0.0, 1.0));
-    let order = Order { unloading: true, axes: vec![1], ..order() };
-    let json = answer(&example(3), &order, |row| {
+    let spec = CaseSpec { unloading: true, axes: vec![1], ..spec() };
+    let json = answer(&example(3), &spec, |row| {
         // a run begins on the way up
         let (mut z, before): (f64, f64) = match state.get() {
             (z, before, side) if side >= row.side => (z, before),

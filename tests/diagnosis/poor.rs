@@ -1,9 +1,9 @@
 //! Poor readings: what they cannot say is said, and nothing breaks.
 
-use rodcal::inference::Limit;
+use rodcal::diagnosis::Limitation;
 use rodcal::rig::readings::{Axis, Readings};
 use rodcal::units::UM;
-use rodcal_trial::rig::{Columns, Effect, Order};
+use rodcal_trial::rig::{CaseSpec, Columns, Effect};
 use serde_json::Value;
 
 use super::{Answer, interval};
@@ -15,8 +15,8 @@ const BARE: Columns =
     Columns { trial: false, phase: false, time: false, temperature: false, kilograms: false };
 
 fn reason<'a>(answer: &'a Answer, effect: &str) -> &'a str {
-    let of = answer.found.not_testable.iter().find(|not| not.effect.name == effect);
-    &of.unwrap_or_else(|| panic!("{effect} is testable: {:?}", answer.found.not_testable)).reason
+    let reason = answer.found.not_testable.iter().find(|not| not.effect.name == effect);
+    &reason.unwrap_or_else(|| panic!("{effect} is testable: {:?}", answer.found.not_testable)).reason
 }
 
 /// A diagnosis of anything: numbers that must be there are finite, and findings are whole.
@@ -43,9 +43,9 @@ fn assert_whole(answer: &Answer, what: &str) {
 
 #[test]
 fn one_axis_is_said_to_tell_little() {
-    let order = Order { axes: vec![1], ..Order::default() };
-    let answer = Answer::made(&order, &[], 3);
-    assert!(answer.found.limits.contains(&Limit::OneAxis(Axis::Y)), "{:?}", answer.found.limits);
+    let spec = CaseSpec { axes: vec![1], ..CaseSpec::default() };
+    let answer = Answer::simulated(&spec, &[], 3);
+    assert!(answer.found.limits.contains(&Limitation::OneAxis(Axis::Y)), "{:?}", answer.found.limits);
 }
 
 /// A clamp that takes up load beyond 9 N, at four loads: a parabola fits them all, and predicts
@@ -64,23 +64,23 @@ fn what_only_describes_is_confirmed_only_in_part() {
     let said = answer.json["headline"].as_str().unwrap();
     assert!(said.contains("times the residual of the fit") && said.contains("confirm it only in part"));
     // what other readings confirm is said without
-    let clear = Answer::made(&Order::default(), &[Effect::StiffnessScale(0.9)], 3);
+    let clear = Answer::simulated(&CaseSpec::default(), &[Effect::StiffnessScale(0.9)], 3);
     assert!(!clear.json["headline"].as_str().unwrap().contains("in part"));
 }
 
 #[test]
 fn without_repeats_every_claim_is_weaker() {
-    let order = Order { trials: 1, ..Order::default() };
-    let answer = Answer::made(&order, &[Effect::StiffnessScale(0.9)], 3);
-    assert!(answer.found.limits.contains(&Limit::NoRepeats), "{:?}", answer.found.limits);
+    let spec = CaseSpec { trials: 1, ..CaseSpec::default() };
+    let answer = Answer::simulated(&spec, &[Effect::StiffnessScale(0.9)], 3);
+    assert!(answer.found.limits.contains(&Limitation::NoRepeats), "{:?}", answer.found.limits);
     assert_eq!(answer.effects(), ["stiffness_scale"]);
     assert!(answer.json["lack_of_fit_before"].is_null());
 }
 
 #[test]
 fn what_has_no_column_is_not_testable() {
-    let order = Order { unloading: false, columns: BARE, ..Order::default() };
-    let answer = Answer::made(&order, &[], 3);
+    let spec = CaseSpec { unloading: false, columns: BARE, ..CaseSpec::default() };
+    let answer = Answer::simulated(&spec, &[], 3);
     assert!(reason(&answer, "creep").contains("time_s"));
     assert!(reason(&answer, "hysteresis").contains("phase"));
     assert!(reason(&answer, "thermal_drift").contains("temperature_c"));
@@ -133,9 +133,9 @@ fn certified_figures_of_the_nist_load_cell() {
 #[test]
 fn friction_of_a_line() {
     let friction = Effect::Friction { axis: None, force: 1.0, presliding: 0.5 * UM, scatter: 0.0 };
-    let order = Order { axes: vec![1], all_channels: false, ..Order::default() };
-    let made = order.made(&[friction], 9);
-    let answer = Answer::of(None, &made.readings);
+    let spec = CaseSpec { axes: vec![1], all_channels: false, ..CaseSpec::default() };
+    let case = spec.simulated(&[friction], 9);
+    let answer = Answer::of(None, &case.readings);
     assert_eq!(answer.effects(), ["friction"], "{}", answer.json["headline"]);
     let [_, force, _] = interval(&answer.findings()[0], "force_n");
     assert!((force - 1.0).abs() < 0.03, "{force}");
@@ -179,6 +179,6 @@ fn hardly_any_readings_are_no_reason_to_break() {
 fn fewer_readings_than_folds_need_are_said_to_be_few() {
     let answer = Answer::of(Some(ROD), "axis,load_n,dy_um\ny,5,620\ny,10,1240\n");
     let limits = &answer.found.limits;
-    assert!(limits.contains(&Limit::NoRepeats), "{limits:?}");
-    assert!(limits.contains(&Limit::FewReadings(2)), "{limits:?}");
+    assert!(limits.contains(&Limitation::NoRepeats), "{limits:?}");
+    assert!(limits.contains(&Limitation::FewReadings(2)), "{limits:?}");
 }

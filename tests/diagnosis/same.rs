@@ -1,13 +1,13 @@
 //! What says the same gets the same diagnosis.
 
 use rodcal::units::{STANDARD_GRAVITY, UM};
-use rodcal_trial::rig::{Columns, Effect, Order};
+use rodcal_trial::rig::{CaseSpec, Columns, Effect};
 use serde_json::Value;
 
 use super::Answer;
 
-fn order() -> Order {
-    Order { axes: vec![1, 2], ..Order::default() }
+fn spec() -> CaseSpec {
+    CaseSpec { axes: vec![1, 2], ..CaseSpec::default() }
 }
 
 fn effects() -> [Effect; 2] {
@@ -57,48 +57,48 @@ fn assert_same_diagnosis(a: &Answer, b: &Answer) {
 
 #[test]
 fn names_of_trials_mean_nothing() {
-    let made = order().made(&effects(), 31);
-    let plain = Answer::of_made(&made);
+    let case = spec().simulated(&effects(), 31);
+    let plain = Answer::of_case(&case);
     for names in [["3", "1", "2"], ["c", "a", "b"], ["after lunch", "0", "-1"]] {
-        let mut renamed = table(&made.readings);
+        let mut renamed = table(&case.readings);
         let column = renamed[0].iter().position(|name| name == "trial").unwrap();
         for row in &mut renamed[1..] {
             let number: usize = row[column].parse().unwrap();
             row[column] = names[number - 1].into();
         }
-        assert_same_diagnosis(&plain, &Answer::of(Some(&made.rod), &text(&renamed)));
+        assert_same_diagnosis(&plain, &Answer::of(Some(&case.rod), &text(&renamed)));
     }
 }
 
 #[test]
 fn columns_may_stand_in_any_order() {
-    let made = order().made(&effects(), 32);
-    let plain = Answer::of_made(&made);
-    let columns = table(&made.readings)[0].len();
+    let case = spec().simulated(&effects(), 32);
+    let plain = Answer::of_case(&case);
+    let columns = table(&case.readings)[0].len();
     for turn in 1..columns {
-        let mut turned = table(&made.readings);
+        let mut turned = table(&case.readings);
         turned.iter_mut().for_each(|row| row.rotate_left(turn));
         turned.iter_mut().for_each(|row| {
             if turn % 2 == 0 {
                 row.reverse()
             }
         });
-        assert_same_diagnosis(&plain, &Answer::of(Some(&made.rod), &text(&turned)));
+        assert_same_diagnosis(&plain, &Answer::of(Some(&case.rod), &text(&turned)));
     }
 }
 
 #[test]
 fn kilograms_are_newtons() {
-    let made = order().made(&effects(), 33);
-    let mut kilograms = table(&made.readings);
+    let case = spec().simulated(&effects(), 33);
+    let mut kilograms = table(&case.readings);
     let column = kilograms[0].iter().position(|name| name == "load_n").unwrap();
     kilograms[0][column] = "load_kg".into();
     for row in &mut kilograms[1..] {
         let load: f64 = row[column].parse().unwrap();
         row[column] = (load / STANDARD_GRAVITY).to_string();
     }
-    assert_same_diagnosis(&Answer::of_made(&made), &Answer::of(Some(&made.rod), &text(&kilograms)));
-    let columns = Columns { kilograms: true, ..order().columns };
-    let made = Order { columns, ..order() }.made(&effects(), 33);
-    assert!(made.readings.contains("load_kg"));
+    assert_same_diagnosis(&Answer::of_case(&case), &Answer::of(Some(&case.rod), &text(&kilograms)));
+    let columns = Columns { kilograms: true, ..spec().columns };
+    let case = CaseSpec { columns, ..spec() }.simulated(&effects(), 33);
+    assert!(case.readings.contains("load_kg"));
 }

@@ -25,7 +25,7 @@ fn rates(name: &str, rig: &Rig, robust: Robust) -> Rates {
     let fits: Vec<Fit> =
         (0..SEEDS).map(|seed| with_rod(&readings(rig, &truths, 1000 + seed), &steel, robust)).collect();
     let holds = |e: Estimate, truth: f64| (e.value - truth).abs() <= e.half_width_95().unwrap();
-    let percent = |hits: usize, of: usize| 100.0 * hits as f64 / of as f64;
+    let percent = |hits: usize, total: usize| 100.0 * hits as f64 / total as f64;
     let lines: Vec<(&Line, f64)> =
         fits.iter().flat_map(|f| f.lines.iter().zip(truths.iter().map(|t| t.slope * UM))).collect();
     let of_lines = |hit: &dyn Fn(&(&Line, f64)) -> bool| {

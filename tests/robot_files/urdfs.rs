@@ -204,8 +204,8 @@ fn the_panda_gets_the_link_lengths_that_its_maker_publishes() {
     let robot =
         Robot::from_text("robot.urdf", &text, Some("panda_link0"), Some("ball_link")).expect("a panda");
     // Craig's a and d in the maker's table; here a belongs to the joint in front of it
-    let lengths = |of: fn(&rodcal::robot::Hayati) -> f64| -> Vec<f64> {
-        robot.joints.iter().map(|joint| (of(&joint.link).abs() * 1e6).round() / 1e6).collect()
+    let lengths = |number: fn(&rodcal::robot::Hayati) -> f64| -> Vec<f64> {
+        robot.joints.iter().map(|joint| (number(&joint.link).abs() * 1e6).round() / 1e6).collect()
     };
     assert_eq!(lengths(|link| link.a), [0.0, 0.0, 0.0825, 0.0825, 0.0, 0.088, 0.0]);
     assert_eq!(lengths(|link| link.d), [0.0, 0.0, 0.316, 0.0, 0.384, 0.0, 0.0]);

@@ -114,8 +114,8 @@ impl Reader<'_> {
         self.text[self.at..].chars().next()
     }
 
-    fn take(&mut self, of: &[char]) -> Option<char> {
-        let found = self.peek().filter(|c| of.contains(c))?;
+    fn take(&mut self, any: &[char]) -> Option<char> {
+        let found = self.peek().filter(|c| any.contains(c))?;
         self.at += found.len_utf8();
         Some(found)
     }
@@ -125,12 +125,12 @@ impl Reader<'_> {
         Fault { at: self.at, found, expected: expected.into() }
     }
 
-    fn deeper<T>(&mut self, of: impl FnOnce(&mut Self) -> Result<T, Fault>) -> Result<T, Fault> {
+    fn deeper<T>(&mut self, parse: impl FnOnce(&mut Self) -> Result<T, Fault>) -> Result<T, Fault> {
         if self.depth == DEEPEST {
             return Err(self.fault("fewer brackets and signs inside each other"));
         }
         self.depth += 1;
-        let result = of(self);
+        let result = parse(self);
         self.depth -= 1;
         result
     }
@@ -139,8 +139,8 @@ impl Reader<'_> {
         let mut left = self.product()?;
         while let Some(sign) = self.take(&['+', '-', '−']) {
             let right = Box::new(self.product()?);
-            let of: fn(f64, f64) -> f64 = if sign == '+' { |a, b| a + b } else { |a, b| a - b };
-            left = Node::With(of, Box::new(left), right);
+            let operation: fn(f64, f64) -> f64 = if sign == '+' { |a, b| a + b } else { |a, b| a - b };
+            left = Node::With(operation, Box::new(left), right);
         }
         Ok(left)
     }
@@ -149,8 +149,8 @@ impl Reader<'_> {
         let mut left = self.sign()?;
         while let Some(sign) = self.take(&['*', '·', '/']) {
             let right = Box::new(self.sign()?);
-            let of: fn(f64, f64) -> f64 = if sign == '/' { |a, b| a / b } else { |a, b| a * b };
-            left = Node::With(of, Box::new(left), right);
+            let operation: fn(f64, f64) -> f64 = if sign == '/' { |a, b| a / b } else { |a, b| a * b };
+            left = Node::With(operation, Box::new(left), right);
         }
         Ok(left)
     }

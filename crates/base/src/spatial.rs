@@ -130,7 +130,7 @@ impl Pose {
 /// # Errors
 /// As [`thin_svd`]: for points that are not finite.
 pub fn best_motion(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Result<Pose> {
-    let mean = |of: &[Vector3<f64>]| of.iter().sum::<Vector3<f64>>() / of.len().max(1) as f64;
+    let mean = |points: &[Vector3<f64>]| points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
     let (centre, goal) = (mean(from), mean(to));
     let spread: Matrix3<f64> = from.iter().zip(to).map(|(x, y)| (y - goal) * (x - centre).transpose()).sum();
     let svd = thin_svd(&DMatrix::from_column_slice(3, 3, spread.as_slice()))?;

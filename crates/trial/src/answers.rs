@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::envelope::{line, parsed};
+use super::archive::{line, parsed};
 use rodcal_base::error::{Error, Place, Result};
 use rodcal_base::files;
 
@@ -22,8 +22,8 @@ pub struct Answer {
     pub sha256: BTreeMap<String, String>,
     /// What would be read where `asked.csv` asks, in its order, µm; nothing where it does not, or
     /// where there is no answer.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub asked_um: Option<Vec<f64>>,
+    #[serde(default, rename = "asked_um", skip_serializing_if = "Option::is_none")]
+    pub predicted_um: Option<Vec<f64>>,
 }
 
 /// The answers that are there, none where there is no file; half a line at the end, of a run that
@@ -117,7 +117,7 @@ mod tests {
             case: case.into(),
             answer: json!({"verdict": "consistent"}),
             sha256: BTreeMap::new(),
-            asked_um: None,
+            predicted_um: None,
         }
     }
 

@@ -2,52 +2,52 @@
 //!
 //! Kinematics, statics and the rod are this room's own; the fitter shares none of them.
 
-mod again;
 mod arm;
-mod asked;
 mod beyond;
 mod conflict;
 mod draw;
 mod effect;
+mod follow_up;
 mod geometry;
+mod inverse_kinematics;
 mod mistake;
 mod noise;
+mod nuisance;
 mod numbers;
 mod oracle;
-mod reach;
+mod prediction_query;
 mod rivals;
 mod rod;
 mod setup;
 mod site;
-mod taken_up;
 mod text;
 
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-pub use self::again::{Proposed, again};
-use self::asked::Question;
 use self::conflict::Conflict;
 use self::effect::Effect;
+pub use self::follow_up::{Proposed, follow_up};
 use self::mistake::Mistake;
 use self::oracle::Oracle;
+use self::prediction_query::Query;
 use self::rod::Rod;
 use self::setup::Needs;
 use self::site::{Devices, Site};
 use self::text::Written;
 use super::Case;
 use crate::chance::{happens, log_uniform};
-use crate::truth::{Concealed, Kind, Parameter, Truth};
-use crate::{Half, Source};
+use crate::ground_truth::{Concealed, GroundTruth, Kind, Parameter};
+use crate::{Source, Suite};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::UM;
 
 /// Streams of random numbers that the rig does not use: of the cases, and of what came later than
 /// these.
 const STREAM: u64 = 1 << 32;
-const ASKED: u64 = 4 << 32;
-const AGAIN: u64 = 5 << 32;
+const QUERY: u64 = 4 << 32;
+const FOLLOW_UP: u64 = 5 << 32;
 
 /// Shares of clean, single, several, unknown and mistaken cases.
 const SHARES: [(Kind, f64); 5] = [
@@ -88,19 +88,20 @@ struct Drawn {
 /// Case number `number` of a trial.
 pub fn case(source: &Source, number: usize) -> Case {
     let drawn = drawn(source, number);
-    let asked = asked::draw(&drawn.site, &mut Random::of_seed(source.seed.0, ASKED + number as u64));
-    let written = drawn.mistake.as_ref().map(|mistake| mistake.made(&drawn.right));
+    let query =
+        prediction_query::draw(&drawn.site, &mut Random::of_seed(source.seed.0, QUERY + number as u64));
+    let written = drawn.mistake.as_ref().map(|mistake| mistake.applied_to(&drawn.right));
     let mut files = text::files(written.as_ref().unwrap_or(&drawn.right));
-    files.extend(asked.files());
-    let truth = truth(format!("calibration/case-{number:04}"), &drawn, &asked);
+    files.extend(query.files());
+    let truth = ground_truth(format!("calibration/case-{number:04}"), &drawn, &query);
     let residuals = source.residuals.clone();
-    Case { files, truth: Truth { seed: Some(source.seed), residuals, ..truth } }
+    Case { files, truth: GroundTruth { seed: Some(source.seed), residuals, ..truth } }
 }
 
 fn drawn(source: &Source, number: usize) -> Drawn {
     let mut random = Random::of_seed(source.seed.0, STREAM + number as u64);
     let random = &mut random;
-    let conflict = (source.half == Half::Conflicts).then(|| Conflict::of(number));
+    let conflict = (source.suite == Suite::Conflicts).then(|| Conflict::of(number));
     let kind = if conflict.is_some() { Kind::Single } else { drawn_kind(random) };
     let (numbers, needs) = match conflict {
         Some(conflict) => (Vec::new(), conflict.needs()),
@@ -198,7 +199,7 @@ fn effects(
     numbers.iter().filter_map(of_number).collect()
 }
 
-fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {
+fn ground_truth(case: String, drawn: &Drawn, query: &Query) -> GroundTruth {
     let Drawn { kind, site, effects, noise, .. } = drawn;
     let mut oracle = (!effects.is_empty()).then(|| Oracle::new(site));
     if let Some(oracle) = &mut oracle {
@@ -209,7 +210,7 @@ fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {
         let alone = site.added(std::slice::from_ref(effect), &[]);
         let place = draw::place(effect, site);
         Some(Concealed {
-            effect: effect.name(site.has_sockets()).into(),
+            effect: effect.name(site.has_sockets()),
             location: place.to_string(),
             place,
             parameters: with_places(site, effect, parameters(effect.parameters())),
@@ -223,7 +224,7 @@ fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {
         Concealed::mistake(mistake.name(), mistake.place(site), parameters(mistake.parameters()))
     }));
     let left = oracle.as_ref().map(|oracle| oracle.share_left(effects));
-    Truth {
+    GroundTruth {
         case,
         kind: *kind,
         conflict: drawn.conflict.map(|conflict| conflict.name().to_owned()),
@@ -231,7 +232,7 @@ fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {
         companions: Vec::new(),
         numbers_off: site.times,
         noise_um: sd / UM,
-        noise_shape: site.scatter.words(),
+        noise_shape: site.scatter.description(),
         quantum_um: site.scatter.step / UM,
         readings: 3 * site.rows.len(),
         protocol: description(site),
@@ -242,7 +243,7 @@ fn truth(case: String, drawn: &Drawn, asked: &Question) -> Truth {
             .map(|left| left / (left + 1.0)),
         seed: None,
         residuals: Vec::new(),
-        asked: Some(asked.truth(site, effects, noise)),
+        query: Some(query.truth(site, effects, noise)),
     }
 }
 
@@ -278,16 +279,17 @@ fn description(site: &Site) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect_name::EffectName;
 
-    fn case(half: Half, number: usize) -> Case {
-        super::case(&Source { seed: crate::Seed(1), half, residuals: Vec::new() }, number)
+    fn case(suite: Suite, number: usize) -> Case {
+        super::case(&Source { seed: crate::Seed(1), suite, residuals: Vec::new() }, number)
     }
 
     #[test]
     fn a_case_is_what_its_kind_says() {
         let mut kinds = std::collections::BTreeSet::new();
         for number in 0..16 {
-            let truth = case(Half::Calibration, number).truth;
+            let truth = case(Suite::Calibration, number).truth;
             let expected = match truth.kind {
                 Kind::Clean | Kind::Suspect => 0..=0,
                 Kind::Single | Kind::Unknown | Kind::Mistake => 1..=1,
@@ -305,12 +307,13 @@ mod tests {
 
     #[test]
     fn both_sides_of_a_conflict_are_drawn_in_turn() {
-        let names: Vec<(String, String)> = (0..4)
-            .map(|number| case(Half::Conflicts, number).truth)
+        let names: Vec<(String, EffectName)> = (0..4)
+            .map(|number| case(Suite::Conflicts, number).truth)
             .map(|truth| (truth.conflict.unwrap(), truth.effects[0].effect.clone()))
             .collect();
-        let expected = ["readback_lag", "backlash", "tip_mass", "joint_compliance"];
-        assert!(names.iter().map(|(_, effect)| effect.as_str()).eq(expected), "{names:?}");
+        let expected =
+            [EffectName::ReadbackLag, EffectName::Backlash, EffectName::TipMass, EffectName::JointCompliance];
+        assert!(names.iter().map(|(_, effect)| effect).eq(&expected), "{names:?}");
         assert_eq!((&names[0].0, names[1].0 == names[2].0), (&names[1].0, false));
     }
 }

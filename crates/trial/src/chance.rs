@@ -13,6 +13,6 @@ pub fn happens(random: &mut Random, probability: f64) -> bool {
 }
 
 /// One of several; without any the other.
-pub fn one_of<T: Copy>(random: &mut Random, of: &[T], otherwise: T) -> T {
-    of.get(random.index(of.len())).copied().unwrap_or(otherwise)
+pub fn one_of<T: Copy>(random: &mut Random, choices: &[T], otherwise: T) -> T {
+    choices.get(random.index(choices.len())).copied().unwrap_or(otherwise)
 }

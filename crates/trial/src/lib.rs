@@ -1,4 +1,4 @@
-//! Concealed-effect trials: recordings in which an effect is hidden, sealed in an envelope, and the
+//! Concealed-effect trials: recordings in which an effect is hidden, sealed in an archive, and the
 //! score of whoever answers what it was.
 //!
 //! The generator shares no physics with the models that answer: it knows file formats and nothing
@@ -7,14 +7,15 @@
 //! every recording without its noise.
 
 pub mod answers;
+pub mod archive;
 mod calibration;
 mod chance;
-pub mod envelope;
+pub mod effect_name;
+pub mod ground_truth;
 mod place;
 pub mod rig;
 pub mod score;
 mod seed;
-pub mod truth;
 
 pub use seed::Seed;
 
@@ -24,12 +25,12 @@ pub struct Case {
     /// Name and text of each file.
     pub files: Vec<(String, String)>,
     /// What is concealed.
-    pub truth: truth::Truth,
+    pub truth: ground_truth::GroundTruth,
 }
 
-/// What is tried.
+/// A suite of cases: what is tried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Half {
+pub enum Suite {
     /// Readings of rods at a stiffness rig.
     Rig,
     /// Recordings of arms.
@@ -46,7 +47,7 @@ pub struct Source {
     /// Every random number comes from it.
     pub seed: Seed,
     /// What is tried.
-    pub half: Half,
+    pub suite: Suite,
     /// Residuals of a real recording that are the noise, in standard deviations; none: the noise is
     /// computed.
     pub residuals: Vec<f64>,
@@ -55,8 +56,8 @@ pub struct Source {
 impl Source {
     /// Case number `number`.
     fn case(&self, number: usize) -> Case {
-        let is_third = self.half == Half::Both && number.is_multiple_of(3);
-        match matches!(self.half, Half::Calibration | Half::Conflicts) || is_third {
+        let is_third = self.suite == Suite::Both && number.is_multiple_of(3);
+        match matches!(self.suite, Suite::Calibration | Suite::Conflicts) || is_third {
             true => calibration::case(self, number),
             false => rig::case(self.seed, number, &self.residuals),
         }
@@ -67,27 +68,27 @@ impl Source {
 mod tests {
     use super::*;
 
-    fn case(seed: u128, half: Half, number: usize) -> Case {
-        Source { seed: Seed(seed), half, residuals: Vec::new() }.case(number)
+    fn case(seed: u128, suite: Suite, number: usize) -> Case {
+        Source { seed: Seed(seed), suite, residuals: Vec::new() }.case(number)
     }
 
     #[test]
     fn a_seed_and_a_number_make_the_same_case() {
-        for half in [Half::Rig, Half::Calibration] {
-            assert_eq!(case(7, half, 3), case(7, half, 3));
-            let other = [case(7, half, 4), case(8, half, 3)];
-            assert!(other.iter().all(|other| other.files != case(7, half, 3).files));
+        for suite in [Suite::Rig, Suite::Calibration] {
+            assert_eq!(case(7, suite, 3), case(7, suite, 3));
+            let other = [case(7, suite, 4), case(8, suite, 3)];
+            assert!(other.iter().all(|other| other.files != case(7, suite, 3).files));
         }
     }
 
     #[test]
     fn files_say_that_they_are_simulated_and_nothing_of_the_effect() {
-        for (half, cases) in [(Half::Rig, 8), (Half::Calibration, 6)] {
+        for (suite, cases) in [(Suite::Rig, 8), (Suite::Calibration, 6)] {
             for number in 0..cases {
-                let case = case(1, half, number);
+                let case = case(1, suite, number);
                 for (name, text) in &case.files {
                     assert!(text.starts_with("# SIMULATED"), "{name}");
-                    assert!(case.truth.effects.iter().all(|e| !text.contains(&e.effect)), "{name}");
+                    assert!(case.truth.effects.iter().all(|e| !text.contains(e.effect.as_str())), "{name}");
                 }
             }
         }

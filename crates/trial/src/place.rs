@@ -3,7 +3,6 @@
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 /// A place by the keys of the diagnosis' JSON; a key that is absent says nothing. The form of a law
 /// (`form`) is no place and is not read.
@@ -17,18 +16,16 @@ pub struct Place {
     /// A joint of the rod, a clamp, a socket.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Columns, keys or files.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub key: Option<String>,
+    pub key: Option<Key>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub station_mm: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub channel: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub towards: Option<String>,
-    /// An axis, or a list of two.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub loads_along: Option<Value>,
+    pub loads_along: Option<Axes>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub about: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -39,14 +36,68 @@ pub struct Place {
     pub after_row: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub row: Option<usize>,
-    /// The number of a joint of the robot, or `all`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub joint: Option<Value>,
+    pub joint: Option<Joints>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub driven_by: Option<usize>,
     /// Several places of one thing.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub all: Vec<Place>,
+}
+
+/// Columns, keys or files as their file names them; what is said more closely follows behind a
+/// comma: `dy_um, trial 2`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(from = "String", into = "String")]
+pub struct Key {
+    parts: Vec<String>,
+}
+
+impl Key {
+    const COMMA: &str = ", ";
+
+    /// True where this says what `other` says, or says it more closely.
+    pub fn refines(&self, other: &Key) -> bool {
+        self.parts.first() == other.parts.first() && other.parts.iter().all(|part| self.parts.contains(part))
+    }
+}
+
+impl From<String> for Key {
+    fn from(text: String) -> Key {
+        Key { parts: text.split(Key::COMMA).map(str::to_owned).collect() }
+    }
+}
+
+impl From<Key> for String {
+    fn from(key: Key) -> String {
+        key.parts.join(Key::COMMA)
+    }
+}
+
+/// One axis, or the two that turn together.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+#[allow(missing_docs)]
+pub enum Axes {
+    One(String),
+    Two([String; 2]),
+}
+
+/// One joint of the robot, from 1, or all of them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+#[allow(missing_docs)]
+pub enum Joints {
+    One(usize),
+    All(AllJoints),
+}
+
+/// As JSON `all`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[allow(missing_docs)]
+pub enum AllJoints {
+    All,
 }
 
 impl Place {
@@ -62,17 +113,22 @@ impl Place {
 
     /// Columns, keys or files.
     pub fn key(key: &str) -> Place {
-        Place { key: Some(key.into()), ..Place::default() }
+        Place { key: Some(key.to_owned().into()), ..Place::default() }
     }
 
     /// A joint of the robot, from 0.
     pub fn joint(joint: usize) -> Place {
-        Place { joint: Some((joint + 1).into()), ..Place::default() }
+        Place { joint: Some(Joints::One(joint + 1)), ..Place::default() }
+    }
+
+    /// All joints of the robot.
+    pub fn all_joints() -> Place {
+        Place { joint: Some(Joints::All(AllJoints::All)), ..Place::default() }
     }
 
     /// With loads along this axis only.
     pub fn loads_along(self, axis: &str) -> Place {
-        Place { loads_along: Some(axis.into()), ..self }
+        Place { loads_along: Some(Axes::One(axis.into())), ..self }
     }
 
     /// True where nothing is said.
@@ -89,18 +145,17 @@ impl fmt::Display for Place {
             return f.write_str(&all.join("; "));
         }
         let axes = match &self.loads_along {
-            Some(Value::String(axis)) => axis.clone(),
-            Some(Value::Array(axes)) => {
-                axes.iter().filter_map(Value::as_str).collect::<Vec<_>>().join(" and ")
-            }
-            _ => String::new(),
+            Some(Axes::One(axis)) => axis.clone(),
+            Some(Axes::Two(axes)) => axes.join(" and "),
+            None => String::new(),
         };
         let or_nothing = |text: &Option<String>| text.clone().unwrap_or_default();
         if let Some(part) = &self.part {
             f.write_str(part)?;
             return if axes.is_empty() { Ok(()) } else { write!(f, ", loads along {axes}") };
         }
-        if let Some(name) = self.name.as_ref().or(self.key.as_ref()) {
+        let key = self.key.clone().map(String::from);
+        if let Some(name) = self.name.as_ref().or(key.as_ref()) {
             f.write_str(name)?;
             return self.after_row.map_or(Ok(()), |row| write!(f, ", after row {row}"));
         }
@@ -108,10 +163,10 @@ impl fmt::Display for Place {
             return write!(f, "station {station:.1} mm");
         }
         if let Some(joint) = &self.joint {
-            match (joint.as_u64(), self.driven_by) {
-                (Some(joint), Some(from)) => write!(f, "joint {from} to {joint}")?,
-                (Some(joint), None) => write!(f, "joint {joint}")?,
-                _ => f.write_str("all joints")?,
+            match (joint, self.driven_by) {
+                (Joints::One(joint), Some(from)) => write!(f, "joint {from} to {joint}")?,
+                (Joints::One(joint), None) => write!(f, "joint {joint}")?,
+                (Joints::All(_), _) => f.write_str("all joints")?,
             }
             return self.after_row.map_or(Ok(()), |row| write!(f, ", after row {row}"));
         }
@@ -142,7 +197,7 @@ impl fmt::Display for Place {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
+    use serde_json::{Value, json};
 
     #[test]
     fn a_place_is_read_without_the_form_of_its_law() {
@@ -158,6 +213,15 @@ mod tests {
         let all = read(json!({"all": [{"row": 3, "channel": "dx"}, {"row": 4, "channel": "dy"}]}));
         assert_eq!(all.to_string(), "row 3 dx; row 4 dy");
         assert!(read(json!({"curve": "load"})).is_nowhere());
+    }
+
+    #[test]
+    fn a_key_may_say_more_than_another() {
+        let key = |text: &str| Key::from(text.to_owned());
+        assert!(key("dy_um, axis y, trial 2").refines(&key("dy_um, trial 2")));
+        assert!(!key("dy_um, trial 2").refines(&key("dy_um, axis y, trial 2")));
+        assert!(!key("dy_um and dz_um").refines(&key("dy_um")));
+        assert_eq!(String::from(key("x_mm, y_mm, z_mm")), "x_mm, y_mm, z_mm");
     }
 
     #[test]

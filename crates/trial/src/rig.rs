@@ -7,42 +7,43 @@
 //! effects.
 
 pub(crate) mod actual;
-mod again;
-mod asked;
 mod bench;
 mod beyond;
 pub(crate) mod cosserat;
 mod covariance;
+mod direction;
 pub(crate) mod draw;
 pub(crate) mod drawing;
 mod effect;
-mod made;
-mod memory;
+mod follow_up;
+mod load_history;
 mod mistake;
 pub(crate) mod noise;
 mod oracle;
 mod part;
+mod prediction_query;
 mod protocol;
 pub mod residuals;
 mod setup;
+mod simulated_case;
 mod sizes;
 pub(crate) mod tube;
 mod uncertainty;
 mod written;
 
-pub use self::again::{Again, Proposed, again};
 use self::bench::Bench;
 pub use self::effect::Effect;
-pub use self::made::{Made, Order};
+pub use self::follow_up::{FollowUp, Proposed, follow_up};
 use self::mistake::Mistake;
 use self::noise::Noise;
 use self::oracle::Oracle;
 pub use self::protocol::Columns;
+pub use self::simulated_case::{CaseSpec, SimulatedCase};
 use self::written::Written;
 use super::Case;
 use crate::Seed;
 use crate::chance::{happens, log_uniform};
-use crate::truth::{Concealed, Kind, Parameter, Truth};
+use crate::ground_truth::{Concealed, GroundTruth, Kind, Parameter};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{MM, UM};
 
@@ -51,8 +52,8 @@ const SMALL: f64 = 1e-3;
 
 /// Streams of random numbers for what came later than the cases: what is asked for, and what is
 /// measured once more. Those of the cases are their numbers, of a rig's and of a calibration's.
-const ASKED: u64 = 2 << 32;
-const AGAIN: u64 = 3 << 32;
+const QUERY: u64 = 2 << 32;
+const FOLLOW_UP: u64 = 3 << 32;
 
 /// Shares of clean, single, paired, unknown and mistaken cases; in the rest readings are misread.
 const SHARES: [(Kind, f64); 5] = [
@@ -96,7 +97,7 @@ struct Drawn {
 
 impl Drawn {
     fn written(&self) -> Written {
-        self.mistake.as_ref().map_or_else(|| self.right.clone(), |mistake| mistake.made(&self.right))
+        self.mistake.as_ref().map_or_else(|| self.right.clone(), |mistake| mistake.applied_to(&self.right))
     }
 }
 
@@ -104,20 +105,20 @@ impl Drawn {
 /// there are any.
 pub fn case(seed: Seed, number: usize, residuals: &[f64]) -> Case {
     let drawn = drawn(seed, number, residuals);
-    let asked = asked::draw(&drawn.bench, &mut Random::of_seed(seed.0, ASKED + number as u64));
+    let query = prediction_query::draw(&drawn.bench, &mut Random::of_seed(seed.0, QUERY + number as u64));
     let name = format!("case-{number:04}");
     let written = drawn.written();
     let mut files = vec![
         ("rod.toml".into(), written.drawing.toml(&name)),
         ("readings.csv".into(), written.protocol.csv(&written.shown)),
-        ("asked.csv".into(), asked::csv(&asked)),
+        ("asked.csv".into(), prediction_query::csv(&query)),
     ];
     let beside = |(k, (file, drawing)): (usize, &(String, drawing::Drawing))| {
         (file.clone(), drawing.toml(&format!("{name}, rod {}", k + 2)))
     };
     files.extend(written.others.iter().enumerate().map(beside));
-    let truth = truth(format!("rig/{name}"), drawn, &asked);
-    Case { files, truth: Truth { seed: Some(seed), residuals: residuals.to_vec(), ..truth } }
+    let truth = ground_truth(format!("rig/{name}"), drawn, &query);
+    Case { files, truth: GroundTruth { seed: Some(seed), residuals: residuals.to_vec(), ..truth } }
 }
 
 fn drawn(seed: Seed, number: usize, residuals: &[f64]) -> Drawn {
@@ -225,7 +226,7 @@ fn misread(bench: &Bench, noise: &Noise, random: &mut Random) -> Vec<Effect> {
     chosen.into_iter().map(of_cell).collect()
 }
 
-fn truth(case: String, mut drawn: Drawn, asked: &Bench) -> Truth {
+fn ground_truth(case: String, mut drawn: Drawn, query: &Bench) -> GroundTruth {
     if !drawn.effects.is_empty() {
         drawn.oracle.compare(&drawn.noise);
     }
@@ -241,7 +242,7 @@ fn truth(case: String, mut drawn: Drawn, asked: &Bench) -> Truth {
         }
         let place = effect.place(protocol);
         Concealed {
-            effect: effect.name().into(),
+            effect: effect.name(),
             location: place.to_string(),
             place,
             parameters: parameters(bench, effect, &alone),
@@ -256,7 +257,7 @@ fn truth(case: String, mut drawn: Drawn, asked: &Bench) -> Truth {
     let held_out = variance + noise.zero_variance(protocol.quantum);
     let has_gain = !effects.is_empty() && !effects.iter().any(Effect::is_of_one_run);
     let left = has_gain.then(|| oracle.mean_square_left(effects));
-    Truth {
+    GroundTruth {
         case,
         kind: *kind,
         conflict: None,
@@ -264,7 +265,7 @@ fn truth(case: String, mut drawn: Drawn, asked: &Bench) -> Truth {
         companions,
         numbers_off: drawn.times,
         noise_um: variance.sqrt() / UM,
-        noise_shape: noise.words(),
+        noise_shape: noise.description(),
         quantum_um: protocol.quantum / UM,
         readings: drawn.readings.len(),
         protocol: description(bench),
@@ -273,7 +274,7 @@ fn truth(case: String, mut drawn: Drawn, asked: &Bench) -> Truth {
         oracle_gain: left.map(|left| left / (left + held_out)),
         seed: None,
         residuals: Vec::new(),
-        asked: Some(asked::truth(asked, effects, oracle, &drawn.right.shown)),
+        query: Some(prediction_query::truth(query, effects, oracle, &drawn.right.shown)),
     }
 }
 
@@ -331,6 +332,7 @@ fn description(bench: &Bench) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect_name::EffectName;
 
     #[test]
     fn a_case_is_what_its_kind_says() {
@@ -350,7 +352,7 @@ mod tests {
             };
             assert!(expected.contains(&truth.effects.len()), "{truth:?}");
             assert!([1.0, 2.0].contains(&truth.numbers_off));
-            assert!(truth.companions.iter().all(|companion| companion.effect == "friction"));
+            assert!(truth.companions.iter().all(|companion| companion.effect == EffectName::Friction));
             kinds.insert(format!("{:?}", truth.kind));
             if truth.kind == Kind::Single {
                 seen.push(truth.effects[0].detectability.is_detectable());

@@ -6,14 +6,16 @@
 
 mod counterfactual;
 mod data;
-mod judged;
-mod next;
+mod diagnosis;
+mod follow_up;
 mod place;
 mod predictions;
 mod rate;
+mod scored_case;
 mod tables;
 mod target;
 mod targets;
+mod verdict;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,20 +24,23 @@ use rodcal_base::error::{Error, Place, Result};
 
 pub use self::counterfactual::Counterfactual;
 pub use self::data::{Below, Clean, Coverage, Mistakes, Pairs, Part, Score, Singles, Suspects, Unknown};
-use self::judged::{Finding, Judged};
-pub use self::next::{Due, Files, NextMeasurement, Open, Outcome, Said};
+use self::diagnosis::Finding;
+pub use self::follow_up::{Files, FindingSummary, NextMeasurement, Open, Outcome, PendingFollowUp};
 pub use self::predictions::{Predictions, Worst};
 pub use self::rate::Rate;
-pub use self::tables::{Bin, Confusion, Failure, PowerBin};
+use self::scored_case::ScoredCase;
+pub use self::tables::{Bin, Conflicts, Confusion, Failure, PowerBin};
 pub use self::target::{Measured, Missed, Reached, Target};
+pub use self::verdict::Verdict;
 use super::answers::{self, Answer};
-use super::envelope::Manifest;
-use super::truth::{Kind, Truth};
+use super::archive::Manifest;
+use super::effect_name::EffectName;
+use super::ground_truth::{GroundTruth, Kind};
 
 /// A key and answers that belong to one trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sealed {
-    truths: Vec<Truth>,
+    truths: Vec<GroundTruth>,
     given: Vec<Answer>,
     /// False of a key that says nothing of the manifest.
     names_manifest: bool,
@@ -43,8 +48,8 @@ pub struct Sealed {
 
 impl Sealed {
     /// What was proposed for the cases whose answer is ambiguous and holds the truth, by case.
-    pub fn due(&self) -> Vec<Due> {
-        judged(&self.truths, &self.given).iter().filter_map(Due::of).collect()
+    pub fn pending(&self) -> Vec<PendingFollowUp> {
+        answered(&self.truths, &self.given).iter().filter_map(PendingFollowUp::of).collect()
     }
 
     /// The score; `outcomes` are what the proposals led to, by case.
@@ -98,24 +103,24 @@ pub fn open(directory: &Path, key: &Path, answers: &Path) -> Result<Sealed> {
 }
 
 /// Answers beside their truths, by case.
-fn judged<'a>(truths: &'a [Truth], given: &[Answer]) -> Vec<Judged<'a>> {
+fn answered<'a>(truths: &'a [GroundTruth], given: &[Answer]) -> Vec<ScoredCase<'a>> {
     let answers: BTreeMap<&str, &Answer> = given.iter().map(|a| (a.case.as_str(), a)).collect();
-    let mut cases: Vec<Judged<'_>> = truths
+    let mut cases: Vec<ScoredCase<'_>> = truths
         .iter()
-        .filter_map(|truth| Some(Judged::new(truth, answers.get(truth.case.as_str())?)))
+        .filter_map(|truth| Some(ScoredCase::new(truth, answers.get(truth.case.as_str())?)))
         .collect();
     cases.sort_by(|a, b| a.truth.case.cmp(&b.truth.case));
     cases
 }
 
 /// Scores answers; truths without one are left out and counted.
-fn score(truths: &[Truth], given: &[Answer], outcomes: &[(String, Outcome)]) -> Score {
-    let cases = judged(truths, given);
+fn score(truths: &[GroundTruth], given: &[Answer], outcomes: &[(String, Outcome)]) -> Score {
+    let cases = answered(truths, given);
     let outcomes: BTreeMap<&str, &Outcome> =
         outcomes.iter().map(|(case, outcome)| (case.as_str(), outcome)).collect();
-    let half = |name: &str| {
-        let is_of_half = |case: &&Judged<'_>| case.truth.case.starts_with(name);
-        let cases: Vec<Judged<'_>> = cases.iter().filter(is_of_half).cloned().collect();
+    let suite = |name: &str| {
+        let is_of_suite = |case: &&ScoredCase<'_>| case.truth.case.starts_with(name);
+        let cases: Vec<ScoredCase<'_>> = cases.iter().filter(is_of_suite).cloned().collect();
         (!cases.is_empty()).then(|| part(&cases, &outcomes))
     };
     let unanswered = truths.len() - cases.len();
@@ -131,19 +136,19 @@ fn score(truths: &[Truth], given: &[Answer], outcomes: &[(String, Outcome)]) -> 
         remarks,
         whole: part(&cases, &outcomes),
         unanswered,
-        rig: half("rig"),
-        calibration: half("calibration"),
+        rig: suite("rig"),
+        calibration: suite("calibration"),
     }
 }
 
 /// The score of cases in their order.
-fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
+fn part(cases: &[ScoredCase<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
     let of_kind = |kind: Kind| cases.iter().filter(move |case| case.truth.kind == kind);
-    let first = |case: &&Judged<'_>| case.truth.effects.first().map(|e| e.detectability.clone());
+    let first = |case: &&ScoredCase<'_>| case.truth.effects.first().map(|e| e.detectability.clone());
     let is_identifiable =
-        |case: &&Judged<'_>| case.truth.effects.iter().all(|e| e.detectability.is_identifiable());
-    let is_detectable = |case: &&Judged<'_>| first(case).is_some_and(|d| d.is_detectable());
-    let is_named = |case: &Judged<'_>| case.sought().next().is_some();
+        |case: &&ScoredCase<'_>| case.truth.effects.iter().all(|e| e.detectability.is_identifiable());
+    let is_detectable = |case: &&ScoredCase<'_>| first(case).is_some_and(|d| d.is_detectable());
+    let is_named = |case: &ScoredCase<'_>| case.sought().next().is_some();
 
     let of_clean = |times: fn(f64) -> bool| {
         let clean = of_kind(Kind::Clean).filter(move |case| times(case.truth.numbers_off));
@@ -156,17 +161,18 @@ fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
         silent_twice: of_clean(|times| times > 1.0),
     };
 
-    let identifiable: Vec<&Judged<'_>> = of_kind(Kind::Single).filter(is_identifiable).collect();
-    let of_identifiable = |is_so: &dyn Fn(&Judged<'_>) -> bool| Rate::of(identifiable.iter(), |c| is_so(c));
+    let identifiable: Vec<&ScoredCase<'_>> = of_kind(Kind::Single).filter(is_identifiable).collect();
+    let of_identifiable =
+        |is_so: &dyn Fn(&ScoredCase<'_>) -> bool| Rate::of(identifiable.iter(), |c| is_so(c));
     let (name_ok, location_ok) = (of_identifiable(&|c| c.name_ok()), of_identifiable(&|c| c.location_ok()));
     let missed = of_identifiable(&|case| !is_named(case));
-    let named: Vec<&Judged<'_>> =
+    let named: Vec<&ScoredCase<'_>> =
         of_kind(Kind::Single).filter(is_detectable).filter(|case| is_named(case)).collect();
     let in_class = Rate::of(named.iter(), |case| case.in_class());
     let class_size =
         named.iter().map(|case| case.class().len() as f64).sum::<f64>() / named.len().max(1) as f64;
 
-    let faint: Vec<&Judged<'_>> = of_kind(Kind::Single).filter(|case| !is_detectable(case)).collect();
+    let faint: Vec<&ScoredCase<'_>> = of_kind(Kind::Single).filter(|case| !is_detectable(case)).collect();
     let below = Below {
         silent: Rate::of(&faint, |case| !is_named(case) && !case.is_unexplained),
         silent_or_right: Rate::of(&faint, |case| {
@@ -175,16 +181,16 @@ fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
         wrongly_named: Rate::of(&faint, |case| is_named(case) && !case.in_class()),
     };
 
-    let pairs: Vec<&Judged<'_>> = of_kind(Kind::Pair).filter(is_identifiable).collect();
-    let found = |case: &Judged<'_>| case.truth.effects.iter().filter(|e| case.found(e).is_some()).count();
+    let pairs: Vec<&ScoredCase<'_>> = of_kind(Kind::Pair).filter(is_identifiable).collect();
+    let found = |case: &ScoredCase<'_>| case.truth.effects.iter().filter(|e| case.found(e).is_some()).count();
     let both_found = Rate::of(pairs.iter(), |case| found(case) == case.truth.effects.len());
     let one_found = Rate::of(pairs.iter(), |case| found(case) >= 1);
 
-    let unknown: Vec<&Judged<'_>> = of_kind(Kind::Unknown).filter(is_identifiable).collect();
+    let unknown: Vec<&ScoredCase<'_>> = of_kind(Kind::Unknown).filter(is_identifiable).collect();
     let called_unknown = Rate::of(unknown.iter(), |case| case.is_unexplained && !is_named(case));
     let wrongly_named = Rate::of(unknown.iter(), |case| is_named(case));
 
-    let is_mistaken = |case: &&Judged<'_>| case.truth.kind == Kind::Mistake;
+    let is_mistaken = |case: &&ScoredCase<'_>| case.truth.kind == Kind::Mistake;
     // mistakes have a score of their own
     let speaking = || cases.iter().filter(|case| !is_mistaken(case) && !case.findings.is_empty());
     let right_when_named =
@@ -194,7 +200,7 @@ fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
         Rate::of(speaking(), |case| case.class().into_iter().any(|name| case.is_concealed(name)));
 
     let mut coverage = Coverage::default();
-    let of_library = |case: &&Judged<'_>| matches!(case.truth.kind, Kind::Single | Kind::Pair);
+    let of_library = |case: &&ScoredCase<'_>| matches!(case.truth.kind, Kind::Single | Kind::Pair);
     for case in cases.iter().filter(of_library) {
         for concealed in &case.truth.effects {
             for (name, is_in) in case.covered(concealed) {
@@ -224,7 +230,7 @@ fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
         below,
         mistakes: mistakes(cases),
         suspects: Suspects {
-            remarked: Rate::of(of_kind(Kind::Suspect), Judged::all_remarked),
+            remarked: Rate::of(of_kind(Kind::Suspect), ScoredCase::all_remarked),
             named: Rate::of(of_kind(Kind::Suspect), is_named),
         },
         right_when_named,
@@ -234,7 +240,7 @@ fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
         gain_over_oracle: (possible > 0.0).then(|| gained / possible),
         counterfactual_over_oracle: counterfactual.median,
         counterfactual,
-        next_measurement_ok: next::next_measurement(cases, outcomes),
+        next_measurement_ok: follow_up::next_measurement(cases, outcomes),
         bins: tables::bins(cases),
         confusion: tables::confusion(cases),
         conflicts: tables::conflicts(cases),
@@ -250,13 +256,13 @@ fn part(cases: &[Judged<'_>], outcomes: &BTreeMap<&str, &Outcome>) -> Part {
 }
 
 /// Mistakes that were made, and that were not.
-fn mistakes(cases: &[Judged<'_>]) -> Mistakes {
+fn mistakes(cases: &[ScoredCase<'_>]) -> Mistakes {
     let (made, others): (Vec<_>, Vec<_>) = cases.iter().partition(|case| case.truth.kind == Kind::Mistake);
-    let is_named = |case: &Judged<'_>| case.mistake_named().is_some();
-    let mut by_mistake: BTreeMap<String, Rate> = BTreeMap::new();
+    let is_named = |case: &ScoredCase<'_>| case.mistake_named().is_some();
+    let mut by_mistake: BTreeMap<EffectName, Rate> = BTreeMap::new();
     for case in &made {
-        let name = case.truth.effects.first().map_or_else(String::new, |e| e.effect.clone());
-        by_mistake.entry(name).or_default().add(is_named(case));
+        let Some(concealed) = case.truth.effects.first() else { continue };
+        by_mistake.entry(concealed.effect.clone()).or_default().add(is_named(case));
     }
     Mistakes {
         named: Rate::of(&made, |case| is_named(case)),

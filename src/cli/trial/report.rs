@@ -2,11 +2,12 @@
 //! effect must be.
 
 use std::collections::BTreeSet;
+use std::fmt::Display;
 
 use rodcal::report::chart::{Axis, Chart, Colour, Figure, Mark, Marker, Point, Range, Style};
 use rodcal::report::table::{Column, Table};
 use rodcal::report::{Block, Card, Report, Section, Tone};
-use rodcal_trial::score::{Failure, Measured, Part, Rate, Reached, Score};
+use rodcal_trial::score::{Failure, Measured, Part, Rate, Reached, Score, Verdict};
 
 /// Half the size of a circle that stands for all cases of a row, CSS pixels.
 const FULL_PX: f64 = 9.0;
@@ -18,8 +19,8 @@ const MOST_FAILURES: usize = 200;
 /// The report of a score.
 pub fn report(score: &Score) -> Report {
     let missed: Vec<String> = score
-        .halves()
-        .flat_map(|(half, part)| part.missed_targets.iter().map(move |missed| format!("{half}: {missed}")))
+        .suites()
+        .flat_map(|(suite, part)| part.missed_targets.iter().map(move |missed| format!("{suite}: {missed}")))
         .collect();
     let cases = score.whole.cases;
     let headline = match missed.len() {
@@ -33,54 +34,56 @@ pub fn report(score: &Score) -> Report {
         headline,
         warnings: Vec::new(),
         cards: cards(score),
-        sections: score.halves().map(|(half, part)| section(half, part)).collect(),
+        sections: score.suites().map(|(suite, part)| section(suite, part)).collect(),
         provenance: vec![("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into())],
         ..Report::default()
     }
 }
 
-/// How many cases, and of each half how many targets are met and how often it is right when it
+/// How many cases, and of each suite how many targets are met and how often it is right when it
 /// names something.
 fn cards(score: &Score) -> Vec<Card> {
     let mut cards =
         vec![Card::new("Cases", score.whole.cases.to_string(), "with concealed effects, or with none")];
-    for (half, part) in score.halves() {
+    for (suite, part) in score.suites() {
         let (all, missed) = (part.targets.len(), part.missed_targets.len());
         let tone = if missed == 0 { Tone::Good } else { Tone::Attention };
         let right = part.right_when_named;
         let detail = match right.share() {
-            Some(_) => format!("right in {} of {} cases in which it names an effect", right.count, right.of),
+            Some(_) => {
+                format!("right in {} of {} cases in which it names an effect", right.count, right.total)
+            }
             None => "no effect was named".into(),
         };
-        let label = format!("Targets met: {}", heading(half).to_lowercase());
+        let label = format!("Targets met: {}", heading(suite).to_lowercase());
         cards.push(Card::new(label, format!("{} of {all}", all - missed.min(all)), detail).toned(tone));
     }
     cards
 }
 
-fn heading(half: &str) -> &'static str {
-    match half {
+fn heading(suite: &str) -> &'static str {
+    match suite {
         "rig" => "Rods at a stiffness rig",
         _ => "Calibrations of arms",
     }
 }
 
-fn section(half: &str, part: &Part) -> Section {
-    let mut blocks = vec![Block::Table(targets(half, part)), Block::Table(rates(half, part))];
-    blocks.extend(conflicts(half, part).map(Block::Table));
+fn section(suite: &str, part: &Part) -> Section {
+    let mut blocks = vec![Block::Table(targets(suite, part)), Block::Table(rates(suite, part))];
+    blocks.extend(conflicts(suite, part).map(Block::Table));
     // without a truth that can be named there is nothing to confuse
-    let confused = (!part.confusion.is_empty()).then(|| confusion(half, part));
-    let figures = [confused, bins(half, part), power(half, part)];
+    let confused = (!part.confusion.is_empty()).then(|| confusion(suite, part));
+    let figures = [confused, bins(suite, part), power(suite, part)];
     blocks.extend(figures.into_iter().flatten().map(Block::Figure));
     blocks.push(match part.failures.is_empty() {
         true => Block::Paragraph("No case needs inspection.".into()),
-        false => Block::Table(failures(half, &part.failures)),
+        false => Block::Table(failures(suite, &part.failures)),
     });
-    Section::new(heading(half), blocks)
+    Section::new(heading(suite), blocks)
 }
 
 /// What must be reached, missed targets first.
-fn targets(half: &str, part: &Part) -> Table {
+fn targets(suite: &str, part: &Part) -> Table {
     let row = |reached: &Reached| {
         let mut row = match reached.measured {
             Measured::Rate(rate) => cells(reached.target.what, rate),
@@ -93,7 +96,7 @@ fn targets(half: &str, part: &Part) -> Table {
         row
     };
     Table {
-        name: format!("{half}-targets"),
+        name: format!("{suite}-targets"),
         caption:
             "Targets with Wilson's 95 % intervals, missed ones first. A share meets its target by itself, \
                   not by its interval."
@@ -121,12 +124,12 @@ fn percent(share: Option<f64>) -> String {
 /// A rate in the columns of [`rate_columns`].
 fn cells(what: &str, rate: Rate) -> Vec<String> {
     let [lo, hi] = rate.interval().map_or([None; 2], |ends| ends.map(Some));
-    let count = format!("{} of {}", rate.count, rate.of);
+    let count = format!("{} of {}", rate.count, rate.total);
     vec![what.to_owned(), count, percent(rate.share()), percent(lo), percent(hi)]
 }
 
 /// Everything else that is counted.
-fn rates(half: &str, part: &Part) -> Table {
+fn rates(suite: &str, part: &Part) -> Table {
     let Part { clean, single, pairs, unknown, below, mistakes, suspects, .. } = part;
     let rates = [
         ("clean, numbers off by what the file states: silent", clean.silent),
@@ -158,7 +161,7 @@ fn rates(half: &str, part: &Part) -> Table {
         ),
     ];
     let mut rows: Vec<Vec<String>> =
-        rates.iter().filter(|(_, rate)| rate.of > 0).map(|(what, rate)| cells(what, *rate)).collect();
+        rates.iter().filter(|(_, rate)| rate.total > 0).map(|(what, rate)| cells(what, *rate)).collect();
     let predictions = &part.counterfactual;
     let number = |ratio: Option<f64>| ratio.map_or("–".into(), |ratio| format!("{:.0}", 100.0 * ratio));
     if predictions.n > 0 {
@@ -171,7 +174,7 @@ fn rates(half: &str, part: &Part) -> Table {
         ]);
     }
     Table {
-        name: format!("{half}-rates"),
+        name: format!("{suite}-rates"),
         caption: "Rates with Wilson's 95 % intervals.".into(),
         columns: rate_columns(),
         rows,
@@ -180,20 +183,20 @@ fn rates(half: &str, part: &Part) -> Table {
 }
 
 /// Truth against answer: circles as large as the share of their row.
-fn confusion(half: &str, part: &Part) -> Figure {
+fn confusion(suite: &str, part: &Part) -> Figure {
     let rows = &part.confusion;
     // what is an answer comes first, in the same order along both axes
-    let answered: BTreeSet<&str> = rows.values().flat_map(|row| row.keys().map(String::as_str)).collect();
-    let unanswered = rows.keys().map(String::as_str).filter(|truth| !answered.contains(truth));
-    let names: Vec<&str> = answered.iter().copied().chain(unanswered).collect();
+    let answered: BTreeSet<&Verdict> = rows.values().flat_map(|row| row.keys()).collect();
+    let unanswered = rows.keys().filter(|truth| !answered.contains(truth));
+    let names: Vec<&Verdict> = answered.iter().copied().chain(unanswered).collect();
     let answers = answered.len();
-    let place = |name: &str| names.iter().position(|known| *known == name).map(|k| k as f64 + 1.0);
+    let place = |name: &Verdict| names.iter().position(|known| *known == name).map(|k| k as f64 + 1.0);
     let mut chart = Chart::new("", "answer, by its number", "truth");
     for (truth, row) in rows {
         let total: f64 = row.values().map(|&count| count as f64).sum();
         for (answer, &count) in row {
             let (Some(x), Some(y)) = (place(answer), place(truth).map(|y| -y)) else { continue };
-            let is_right = answer == truth || (answer == "unexplained" && part.outside.contains(truth));
+            let is_right = answer.is_right(truth, |effect| part.outside.contains(effect));
             let colour = if is_right { Colour::Blue } else { Colour::Vermilion };
             let marker = if is_right { Marker::Circle } else { Marker::Square };
             let size = FULL_PX * (count as f64 / total.max(1.0)).sqrt().max(0.2);
@@ -211,19 +214,24 @@ fn confusion(half: &str, part: &Part) -> Figure {
     chart.x.range = Range::Fixed(0.4, answers as f64 + 0.6);
     chart.x.names = (0..answers).map(|k| (number(k), (k + 1).to_string())).collect();
     chart.y.names =
-        (0..names.len()).map(|k| (-number(k), format!("{} {}", k + 1, names[k].replace('_', " ")))).collect();
+        (0..names.len()).map(|k| (-number(k), format!("{} {}", k + 1, spaced(names[k])))).collect();
     chart.y.range = Range::Fixed(-(names.len() as f64) - 0.6, -0.4);
     chart.height_px = Some(26.0 * names.len() as f64);
     let truths = rows.len();
-    Figure::from(chart).named(format!("{half}-confusion")).captioned(format!(
+    Figure::from(chart).named(format!("{suite}-confusion")).captioned(format!(
         "Confusion matrix: {truths} identifiable truths against the strongest finding. The numbers are \
          cases; a circle or a square is as large as its share of the row. For physics outside the \
          library, unexplained is the right answer."
     ))
 }
 
-/// What was said of effects that imitate each other.
-fn conflicts(half: &str, part: &Part) -> Option<Table> {
+/// A name as people write it.
+fn spaced(name: &impl Display) -> String {
+    name.to_string().replace('_', " ")
+}
+
+/// What was answered to effects that imitate each other.
+fn conflicts(suite: &str, part: &Part) -> Option<Table> {
     let rows = part.conflicts.iter().flat_map(|(pair, counts)| {
         counts.iter().map(move |(truth, answers)| {
             let mut cells: Vec<(&String, &usize)> = answers.iter().collect();
@@ -238,7 +246,7 @@ fn conflicts(half: &str, part: &Part) -> Option<Table> {
     });
     let rows: Vec<Vec<String>> = rows.collect();
     (!rows.is_empty()).then(|| Table {
-        name: format!("{half}-conflicts"),
+        name: format!("{suite}-conflicts"),
         caption: "Effects that imitate each other: what was concealed, and what was said. In brackets: the truth, where it is not \
                   the strongest finding but one that is indistinguishable from it."
             .into(),
@@ -283,7 +291,7 @@ fn curve(mut chart: Chart, points: &[[f64; 4]]) -> Chart {
         })
 }
 
-fn bins(half: &str, part: &Part) -> Option<Figure> {
+fn bins(suite: &str, part: &Part) -> Option<Figure> {
     let points: Vec<[f64; 4]> =
         part.bins.iter().filter_map(|bin| point(bin.from, bin.to, &bin.location_ok_rate)).collect();
     if points.len() < 2 {
@@ -291,19 +299,19 @@ fn bins(half: &str, part: &Part) -> Option<Figure> {
     }
     let chart = Chart::new("", "expected log Bayes factor of the oracle", "name and place right");
     let chart = curve(chart, &points).with(Mark::Vertical { at: 5.0, text: "identifiable".into() });
-    Some(Figure::from(chart).named(format!("{half}-detectability")).captioned(
+    Some(Figure::from(chart).named(format!("{suite}-detectability")).captioned(
         "Cases with one effect: share whose name and place are right, against the evidence that an \
          oracle would have. Points stand in the middle of their bins; bins without an end are drawn as \
          wide as a factor of 3.",
     ))
 }
 
-fn power(half: &str, part: &Part) -> Option<Figure> {
+fn power(suite: &str, part: &Part) -> Option<Figure> {
     let mut panels = Vec::new();
     for (effect, bins) in &part.power {
         let points: Vec<[f64; 4]> =
             bins.iter().filter_map(|bin| point(bin.from, bin.to, &bin.name_ok_rate)).collect();
-        let mut chart = Chart::new(effect.replace('_', " "), "size over noise", "name right");
+        let mut chart = Chart::new(spaced(effect), "size over noise", "name right");
         chart.x = Axis { range: Range::Fixed(0.02, 100.0), ..chart.x };
         chart.height_px = Some(110.0);
         if !points.is_empty() {
@@ -312,7 +320,7 @@ fn power(half: &str, part: &Part) -> Option<Figure> {
     }
     (!panels.is_empty()).then(|| {
         Figure { panels, columns: 3, shared_legend: true, ..Figure::default() }
-            .named(format!("{half}-power"))
+            .named(format!("{suite}-power"))
             .captioned(
                 "Probability of the right name against the rms change of the readings by the effect, \
                  over their noise. All cases with one effect count, also those that are not \
@@ -321,13 +329,13 @@ fn power(half: &str, part: &Part) -> Option<Figure> {
     })
 }
 
-fn failures(half: &str, failures: &[Failure]) -> Table {
+fn failures(suite: &str, failures: &[Failure]) -> Table {
     let row = |failure: &Failure| {
         vec![failure.case.clone(), failure.what.to_owned(), failure.truth.join("; "), failure.said.join("; ")]
     };
     let left_out = failures.len().saturating_sub(MOST_FAILURES);
     Table {
-        name: format!("{half}-failures"),
+        name: format!("{suite}-failures"),
         caption: "Cases to inspect.".into(),
         columns: ["case", "what", "truth", "said"].map(Column::text).to_vec(),
         rows: failures.iter().take(MOST_FAILURES).map(row).collect(),

@@ -14,7 +14,7 @@ const REPEATABILITY: f64 = 30.0 * UM;
 pub struct Budget {
     /// Of one measured coordinate: sensors and repeatability.
     pub noise: f64,
-    /// Where the noise is known from.
+    /// Noise or scatter, and where it is known from: the beginning of a sentence.
     pub noise_source: String,
     /// Of a coordinate of each clamp's place.
     pub clamps: f64,
@@ -51,7 +51,7 @@ impl Budget {
             // a robot that repeats worse than what is measured of it would be no robot of that
             // noise
             budget.repeatability = repeatability.unwrap_or(REPEATABILITY.min(of_robot(noise)));
-            budget.noise_source = format!("{} µm per coordinate, stated", um(noise));
+            budget.noise_source = format!("Noise {} µm per coordinate, stated", um(noise));
             return Ok(budget);
         }
         let mut unusable = String::new();
@@ -61,7 +61,7 @@ impl Budget {
                 budget.noise = found.noise.pooled;
                 budget.drawing_scale = found.drawing_scale;
                 budget.noise_source = format!(
-                    "{} µm per coordinate, the scatter of {} after calibration",
+                    "Scatter {} µm per coordinate, that of {} after calibration",
                     um(found.noise.pooled),
                     campaign.measurements.file
                 );
@@ -73,7 +73,7 @@ impl Budget {
         }
         budget.noise = (budget.repeatability.powi(2) / 3.0 + SENSORS.powi(2)).sqrt();
         budget.noise_source = format!(
-            "{} µm per coordinate, assumed (repeatability {} µm, sensors {} µm{unusable})",
+            "Scatter {} µm per coordinate, assumed (repeatability {} µm, sensors {} µm{unusable})",
             um(budget.noise),
             um(budget.repeatability),
             um(SENSORS)

@@ -16,7 +16,7 @@ use nalgebra::DMatrix;
 use super::variable::{Variable, moved};
 use crate::beam::TipSolver;
 use crate::design::figure::{Figure, Figures};
-use crate::design::wish::Wish;
+use crate::design::space::DesignSpace;
 use crate::error::Result;
 use crate::linear_program;
 use crate::rod::{NominalNumber, Rod};
@@ -32,7 +32,7 @@ const MOST_STEPS: usize = 80;
 /// What must hold and what counts, beside a design.
 #[derive(Clone, Copy)]
 pub(super) struct Search<'a> {
-    pub(super) wish: &'a Wish,
+    pub(super) space: &'a DesignSpace,
     /// Figures of the design that is bettered.
     pub(super) from: &'a Figures,
     /// What each goal weighs; one of no weight may not lose.
@@ -46,7 +46,7 @@ impl Search<'_> {
     pub(super) fn best(&self, from: &Rod, variables: &[Variable]) -> Result<(Rod, Figures)> {
         let mut solver = TipSolver::default();
         let mut figures = |rod: &Rod| -> Result<Option<Figures>> {
-            if self.wish.possible(rod).is_err() || !is_tube(rod) {
+            if self.space.possible(rod).is_err() || !is_tube(rod) {
                 return Ok(None);
             }
             let mut figures = Figures::of(rod, &mut solver)?.with_frequency(rod)?;
@@ -92,7 +92,7 @@ impl Search<'_> {
     /// be.
     fn logarithms(&self, figures: &Figures) -> (f64, Vec<f64>) {
         let ln = |figure: Figure| figures.get(figure).unwrap_or(f64::NAN).ln();
-        let goals = || self.wish.goals.iter().zip(self.weights);
+        let goals = || self.space.goals.iter().zip(self.weights);
         // Σ w·ln f: a weight of nothing has no say, whatever the figure
         let weighed = goals().filter(|(_, weight)| **weight > 0.0);
         let goal = weighed.map(|(goal, weight)| weight * sign(goal.is_maximised) * ln(goal.figure)).sum();
@@ -100,7 +100,7 @@ impl Search<'_> {
             let least = self.from.get(goal.figure).unwrap_or(f64::NAN).ln();
             sign(goal.is_maximised) * (ln(goal.figure) - least)
         });
-        let limits = self.wish.limits.iter();
+        let limits = self.space.limits.iter();
         let limits = limits.map(|limit| sign(limit.is_least) * (ln(limit.figure) - limit.value.ln()));
         (goal, others.chain(limits).collect())
     }
@@ -131,8 +131,8 @@ impl Search<'_> {
             }
         }
         let is_frequency = |figure: Figure| figure == Figure::FirstFrequency;
-        let swings = self.wish.goals.iter().any(|goal| is_frequency(goal.figure))
-            || self.wish.limits.iter().any(|limit| is_frequency(limit.figure));
+        let swings = self.space.goals.iter().any(|goal| is_frequency(goal.figure))
+            || self.space.limits.iter().any(|limit| is_frequency(limit.figure));
         let slopes = Figures::slopes_by(rod, &numbers, swings)?;
         // ∂ln f/∂ln x
         let slope = |figure: Figure, variable: &Variable| {
@@ -154,14 +154,14 @@ impl Search<'_> {
             variables.iter().map(|variable| sign(is_large) * slope(figure, variable)).collect()
         };
         let (mut goal, mut rows) = (vec![0.0; variables.len()], Vec::new());
-        for (one, weight) in self.wish.goals.iter().zip(self.weights) {
+        for (one, weight) in self.space.goals.iter().zip(self.weights) {
             let row = row(one.figure, one.is_maximised);
             match *weight > 0.0 {
                 true => goal.iter_mut().zip(&row).for_each(|(sum, slope)| *sum += weight * slope),
                 false => rows.push(row),
             }
         }
-        rows.extend(self.wish.limits.iter().map(|limit| row(limit.figure, limit.is_least)));
+        rows.extend(self.space.limits.iter().map(|limit| row(limit.figure, limit.is_least)));
         let over: Vec<f64> = self.logarithms(figures).1.iter().map(|over| over + MARGIN).collect();
         Ok(Terms { goal, rows, over })
     }

@@ -1,6 +1,6 @@
 //! What may vary between the values of a design file's grid.
 
-use crate::design::wish::Wish;
+use crate::design::space::DesignSpace;
 use crate::rod::{NominalNumber, Part, Rod};
 use crate::section::{Round, Section};
 
@@ -42,18 +42,18 @@ pub(super) fn moved(rod: &Rod, variables: &[Variable], step: &[f64]) -> Rod {
 }
 
 /// Lengths, angle, bend and tip, where they are ranges.
-pub(super) fn lengths(wish: &Wish, rod: &Rod) -> Vec<Variable> {
+pub(super) fn lengths(space: &DesignSpace, rod: &Rod) -> Vec<Variable> {
     let all = [
-        (NominalNumber::LengthL1, &wish.l1, rod.l1),
-        (NominalNumber::LengthL2, &wish.l2, rod.l2),
-        (NominalNumber::Angle, &wish.gamma, rod.gamma),
-        (NominalNumber::BendRadius, &wish.bend_radius, rod.bend_radius),
-        (NominalNumber::TipMass, &wish.tip_mass, rod.tip_mass),
+        (NominalNumber::LengthL1, &space.l1, rod.l1),
+        (NominalNumber::LengthL2, &space.l2, rod.l2),
+        (NominalNumber::Angle, &space.gamma, rod.gamma),
+        (NominalNumber::BendRadius, &space.bend_radius, rod.bend_radius),
+        (NominalNumber::TipMass, &space.tip_mass, rod.tip_mass),
     ];
     let varies = |(k, (number, values, now)): (usize, (NominalNumber, &Vec<f64>, f64))| {
         let positive = || values.iter().copied().filter(|value| *value > 0.0);
         let (low, high) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
-        (wish.is_range[k] && low < high && now > 0.0).then(|| Variable {
+        (space.is_range[k] && low < high && now > 0.0).then(|| Variable {
             moves: vec![(number, 1.0)],
             low,
             high,
@@ -63,9 +63,9 @@ pub(super) fn lengths(wish: &Wish, rod: &Rod) -> Vec<Variable> {
 }
 
 /// Outer diameter (at its wall) and wall (at its outer diameter) of the tubes.
-pub(super) fn diameters(wish: &Wish, rod: &Rod) -> Vec<Variable> {
+pub(super) fn diameters(space: &DesignSpace, rod: &Rod) -> Vec<Variable> {
     let of_parts = |parts: &[Part], material: &str| -> Vec<Variable> {
-        let rounds: Vec<&Round> = (wish.tubes.iter())
+        let rounds: Vec<&Round> = (space.tubes.iter())
             .filter(|tube| tube.pipe.material.name == material)
             .filter_map(|tube| tube.pipe.section.as_round())
             .filter(|round| round.inner_diameter > 0.0)
@@ -89,7 +89,7 @@ pub(super) fn diameters(wish: &Wish, rod: &Rod) -> Vec<Variable> {
     if !is_tube(&rod.pipe1.section) || !is_tube(&rod.pipe2.section) {
         return Vec::new();
     }
-    match wish.is_one_tube {
+    match space.is_one_tube {
         true => of_parts(&[Part::Pipe1, Part::Pipe2], &rod.pipe1.material.name),
         false => [(Part::Pipe1, &rod.pipe1), (Part::Pipe2, &rod.pipe2)]
             .iter()

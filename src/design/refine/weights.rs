@@ -1,15 +1,15 @@
 //! What is bettered: one goal, or several by their weights.
 
-use crate::design::wish::Wish;
+use crate::design::space::DesignSpace;
 use crate::error::{Error, Result};
 
-/// What each goal of `wish` weighs, 1 in all, as somebody wrote it: "mass_g", or
+/// What each goal of `space` weighs, 1 in all, as somebody wrote it: "mass_g", or
 /// "c_rod_um=2,mass_g=1"; without a word the first goal alone.
 ///
 /// # Errors
 /// [`Error::Argument`] for what is no goal of the design file, and for what is no weight.
-pub fn weights(wish: &Wish, asked: Option<&str>) -> Result<Vec<f64>> {
-    let mut weights = vec![0.0; wish.goals.len()];
+pub fn weights(space: &DesignSpace, asked: Option<&str>) -> Result<Vec<f64>> {
+    let mut weights = vec![0.0; space.goals.len()];
     let Some(asked) = asked else {
         weights.iter_mut().take(1).for_each(|weight| *weight = 1.0);
         return Ok(weights);
@@ -17,8 +17,8 @@ pub fn weights(wish: &Wish, asked: Option<&str>) -> Result<Vec<f64>> {
     for one in asked.split(',') {
         let (key, weight) = one.split_once('=').unwrap_or((one, "1"));
         let refused = |expected: String| Error::Argument { name: "refine-goal", found: one.into(), expected };
-        let Some(at) = wish.goals.iter().position(|goal| goal.figure.key() == key.trim()) else {
-            let keys: Vec<&str> = wish.goals.iter().map(|goal| goal.figure.key()).collect();
+        let Some(at) = space.goals.iter().position(|goal| goal.figure.key() == key.trim()) else {
+            let keys: Vec<&str> = space.goals.iter().map(|goal| goal.figure.key()).collect();
             return Err(refused(format!("an objective of the design file: {}", keys.join(", "))));
         };
         weights[at] = match weight.trim().parse::<f64>() {

@@ -28,33 +28,33 @@ b,aluminium,40,36,14
 c,carbon-wrapped,30,28,60
 ";
 
-fn wish(text: &str) -> Wish {
-    Wish::from_toml("design.toml", text, &|name| Ok((name.to_owned(), TUBES.to_owned()))).unwrap()
+fn space(text: &str) -> DesignSpace {
+    DesignSpace::from_toml("design.toml", text, &|name| Ok((name.to_owned(), TUBES.to_owned()))).unwrap()
 }
 
 /// All combinations one by one, without anything that saves time.
 #[test]
 fn the_search_is_that_of_looking_at_every_rod() {
-    let wish = wish(TEXT);
-    let count = wish.combinations();
+    let space = space(TEXT);
+    let count = space.combinations();
     assert_eq!(count, 3 * 7 * 2 * 4 * 2 * 9);
     let mut solver = TipSolver::default();
-    let (mut front, mut feasible, mut impossible) = (Front::new(&wish.goals), 0, [0; 3]);
+    let (mut front, mut feasible, mut impossible) = (Front::new(&space.goals), 0, [0; 3]);
     for index in 0..count {
-        match wish.rod(index) {
+        match space.rod(index) {
             Err(why) => impossible[why as usize] += 1,
             Ok(rod) => {
                 let figures = Figures::of(&rod, &mut solver).unwrap().with_frequency(&rod).unwrap();
                 let mut figures = figures;
-                figures.set(Figure::Price, wish.price(&wish.choice(index)));
-                if wish.limits.iter().all(|limit| limit.is_kept(&figures)) {
+                figures.set(Figure::Price, space.price(&space.choice(index)));
+                if space.limits.iter().all(|limit| limit.is_kept(&figures)) {
                     feasible += 1;
                     front.offer(Design { index, figures });
                 }
             }
         }
     }
-    let found = search(&wish, Searched::All, &|_| {}).unwrap();
+    let found = search(&space, Searched::All, &|_| {}).unwrap();
     assert_eq!((found.evaluated, found.feasible, found.impossible), (count, feasible, impossible));
     assert!(feasible > 100 && impossible[0] > 0 && impossible[1] > 0);
     assert_eq!(found.front, front.sorted());
@@ -64,7 +64,7 @@ fn the_search_is_that_of_looking_at_every_rod() {
 #[test]
 fn where_nothing_fits_the_limit_that_would_do_is_named() {
     let text = TEXT.replace("max_mass_g = 700", "max_mass_g = 40");
-    let tight = wish(&text);
+    let tight = space(&text);
     let found = search(&tight, Searched::All, &|_| {}).unwrap();
     assert_eq!((found.feasible, found.front.len()), (0, 0));
     let nearest = found.nearest.unwrap();
@@ -72,29 +72,29 @@ fn where_nothing_fits_the_limit_that_would_do_is_named() {
     // just below what is needed there is still nothing, just above there is
     for (limit, count) in [(relaxed.to * 0.999, 0), (relaxed.to * 1.001, 1)] {
         let text = TEXT.replace("max_mass_g = 700", &format!("max_mass_g = {limit}"));
-        let found = search(&wish(&text), Searched::All, &|_| {}).unwrap();
+        let found = search(&space(&text), Searched::All, &|_| {}).unwrap();
         assert_eq!(found.feasible.min(1), count, "{limit}");
     }
 }
 
 #[test]
 fn a_sample_is_spread_evenly_and_always_the_same() {
-    let mut wish = wish(TEXT);
-    wish.goals.truncate(1);
-    let searched = |samples, seed| search(&wish, Searched::Samples(samples, seed), &|_| {}).unwrap();
+    let mut space = space(TEXT);
+    space.goals.truncate(1);
+    let searched = |samples, seed| search(&space, Searched::Samples(samples, seed), &|_| {}).unwrap();
     let (one, two) = (searched(200, 1), searched(200, 1));
     assert_eq!((one.evaluated, &one.front), (200, &two.front));
     assert!(one.feasible != searched(200, 2).feasible || one.front != searched(200, 2).front);
-    assert_eq!(searched(1_000_000, 1).evaluated, wish.combinations());
-    assert!(search(&wish, Searched::Samples(0, 1), &|_| {}).is_err());
+    assert_eq!(searched(1_000_000, 1).evaluated, space.combinations());
+    assert!(search(&space, Searched::Samples(0, 1), &|_| {}).is_err());
 }
 
 #[test]
 fn one_goal_gives_the_best_rod_and_its_equals() {
-    let mut wish = wish(TEXT);
-    wish.goals = vec![Goal { figure: Figure::Reach, is_maximised: true }];
-    wish.limits.clear();
-    let found = search(&wish, Searched::All, &|_| {}).unwrap();
+    let mut space = space(TEXT);
+    space.goals = vec![Goal { figure: Figure::Reach, is_maximised: true }];
+    space.limits.clear();
+    let found = search(&space, Searched::All, &|_| {}).unwrap();
     // L1 300, L2 600 at 120°: with every tube, tip and bend that fits
     let reach = |design: &Design| design.figures.get(Figure::Reach).unwrap();
     assert!(found.front.len() > 10);

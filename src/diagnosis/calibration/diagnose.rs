@@ -19,11 +19,11 @@ use super::next::next_measurements;
 use super::write_back::destination::destination;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Mode, Options, calibrate};
+use crate::diagnosis::{Diagnosed, Limitation};
 use crate::error::Result;
 use crate::inference::law::propose;
 use crate::inference::{
-    Diagnosed, Discrepancy, Estimate, Finding, Hypothesis, Limit, Location, ShownBy, Sketch, Term,
-    diagnose as infer, sketch,
+    Discrepancy, Estimate, Finding, Hypothesis, Location, ShownBy, Sketch, Term, diagnose as infer, sketch,
 };
 
 /// A campaign's diagnosis.
@@ -95,7 +95,7 @@ pub fn diagnose_calibrated<'c>(
     let mut limits = limits(&context, &model.calibration, &evidence);
     limits.extend(look.scatter.iter().flat_map(|noise| noisy(campaign, noise)));
     let of_neighbours = evidence.correlated_noise;
-    limits.extend(of_neighbours.map(|noise| Limit::CorrelatedPoses(noise.share, noise.length)));
+    limits.extend(of_neighbours.map(|noise| Limitation::CorrelatedPoses(noise.share, noise.length)));
     let mut found = Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits, law };
     if found.diagnosis.discrepancy.is_none() && found.is_implausible() {
         let shape = found.diagnosis.after.clone();

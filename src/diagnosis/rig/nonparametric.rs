@@ -14,7 +14,7 @@
 //! that acts on all lines alike, such as relaxation with one time constant or a seat that gives
 //! way, is one rival and not many.
 //!
-//! What yields along the rod more here than there is a curve over its stations ([`station`]).
+//! What is softer along the rod here than there is a curve over its stations ([`station`]).
 //!
 //! What sets in at a load, or acts one way, has rivals of one number ([`kink`]). What comes and
 //! goes in time has finer curves besides, of [`FINE`] columns of which the first
@@ -22,6 +22,7 @@
 
 mod along;
 mod before;
+mod cycles;
 mod kink;
 mod station;
 mod swing;
@@ -29,19 +30,16 @@ mod swing;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use std::collections::HashMap;
-
-use nalgebra::{DMatrix, DVector};
-
 use self::along::*;
 pub(super) use self::before::Before;
-use super::action::{Action, Weights};
-use super::datum::Datum;
+use self::cycles::Cycles;
 use super::effects::entry::Entry;
-use super::load_history::runs;
+use super::mechanics::action::{Action, Weights};
+use super::mechanics::load_history::runs;
 use super::model::Body;
 use super::numbering::numbered;
-use crate::inference::{Candidate, Location, Parameter, Variable};
+use super::recording::datum::Datum;
+use crate::inference::{Location, Parameter, Variable};
 use crate::spatial::Axis;
 use crate::units::UM;
 
@@ -53,7 +51,7 @@ const MOST_LEVELS: usize = 30;
 /// flat one may have: as large as the known effects on a rod.
 const SLOPE: (f64, f64) = (0.27, 0.02);
 
-/// All curves for these readings. `deflections`: how far the rod yields at each datum by the base
+/// All curves for these readings. `deflections`: how far the rod deflects at each datum by the base
 /// model, m.
 pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[usize])) -> Vec<Entry> {
     let everything: Vec<usize> = (0..data.len()).collect();
@@ -63,21 +61,27 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
     let channels = groups(data, &numbered(data.iter().map(|d| d.channel)), &|d| format!("d{}", d.channel));
     let clock = if data.iter().any(|d| d.time.is_some()) { Variable::Time } else { Variable::Order };
     let mut entries = Vec::new();
+    let cycles = Cycles::of(data, deflections);
     for (along, coordinate, is_of_line) in coordinates(data) {
-        entries.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, PERCENT, SHARE, |i| {
+        let mut curves: Vec<Entry> = Vec::new();
+        curves.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, PERCENT, SHARE, |i| {
             deflections[i]
         }));
         if along.variable == clock && !is_of_line {
-            entries.extend(swing::all(along, &coordinate, data));
+            curves.extend(swing::all(along, &coordinate, data));
         }
         for (place, group) in if is_of_line { &lines } else { &channels } {
             let largest = group.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
             let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
-            entries.extend(curve(along, place, &coordinate, group, UM, size, |_| 1.0));
+            curves.extend(curve(along, place, &coordinate, group, UM, size, |_| 1.0));
             if along.variable == clock && !is_of_line {
-                entries.extend(fine(along, place, &coordinate, group, size));
+                curves.extend(fine(along, place, &coordinate, group, size));
             }
         }
+        if let Some(cycles) = cycles.as_ref().filter(|_| along.is_recording) {
+            curves.retain(|(candidate, actions)| cycles.are_predicted(candidate, actions));
+        }
+        entries.extend(curves);
     }
     let before = Before::of(data);
     if let Some(waits) = before.waits() {
@@ -152,78 +156,28 @@ fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
     found
 }
 
-/// Rank of the load, as `of` counts it, among those along its axis, for the data that `is_of`
-/// admits. Of more than [`MOST_LEVELS`] loads the size instead: where a measured load trembles
-/// about its levels, its rank is a better load.
-fn by_axis(data: &[Datum], of: impl Fn(&Datum) -> f64, is_of: impl Fn(&Datum) -> bool) -> Coordinate {
+/// Rank of the load among those along its axis, for the data that are wanted. Of more than
+/// [`MOST_LEVELS`] loads the size instead: where a measured load trembles about its levels, its
+/// rank is a better load.
+fn by_axis(data: &[Datum], load: impl Fn(&Datum) -> f64, is_wanted: impl Fn(&Datum) -> bool) -> Coordinate {
     let levels = Axis::ALL.map(|axis| {
-        let along = data.iter().filter(|d| is_of(d) && d.direction.axis == axis);
-        let mut levels: Vec<f64> = along.map(&of).collect();
+        let along = data.iter().filter(|d| is_wanted(d) && d.direction.axis == axis);
+        let mut levels: Vec<f64> = along.map(&load).collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup();
         levels
     });
     let rank = |datum: &Datum| {
-        is_of(datum).then_some(())?;
+        is_wanted(datum).then_some(())?;
         let levels = &levels[datum.direction.axis.index()];
         if levels.len() > MOST_LEVELS {
             let (least, most) = (levels[0], levels[levels.len() - 1]);
-            return Some((of(datum) - least) / (most - least));
+            return Some((load(datum) - least) / (most - least));
         }
-        let rank = levels.partition_point(|&level| level < of(datum));
+        let rank = levels.partition_point(|&level| level < load(datum));
         Some((rank as f64 + 0.5) / levels.len() as f64)
     };
     data.iter().map(rank).collect()
-}
-
-/// Takes away, of a load that goes up and down again and again, curves along the recording that do
-/// not predict the next cycle: a curve through neighbours follows anything that a law repeats.
-///
-/// Each cycle in turn is predicted from the others, by the curve with its prior; a curve stays if
-/// it lowers the squares.
-pub(super) fn retain_predictive(entries: &mut Vec<Entry>, data: &[Datum], deflections: &[f64]) {
-    let is_cyclic = data.iter().any(|d| d.motion.is_some_and(|motion| motion.cycle > 0));
-    if !is_cyclic {
-        return;
-    }
-    let cycle = numbered(data.iter().map(|d| (d.run, d.motion.map(|motion| motion.cycle))));
-    let left = DVector::from_iterator(data.len(), data.iter().zip(deflections).map(|(d, u)| d.measured - u));
-    let is_along_recording = |candidate: &Candidate| {
-        matches!(&candidate.location, Location::Curve { label, .. }
-            if [POSITION, ORDER, TIME].iter().any(|along| label.starts_with(&format!("{}, ", along.name))))
-    };
-    entries.retain(|(candidate, actions)| {
-        !is_along_recording(candidate) || predicts(candidate, actions, &left, &cycle)
-    });
-}
-
-/// True where a curve that is fitted to all other cycles lowers the squares of each cycle, all of
-/// them together.
-fn predicts(candidate: &Candidate, actions: &[Action], left: &DVector<f64>, cycle: &[usize]) -> bool {
-    let mut columns = DMatrix::zeros(left.len(), actions.len());
-    for (k, (action, parameter)) in actions.iter().zip(&candidate.parameters).enumerate() {
-        let Action::Shift(weights) = action else { continue };
-        weights.iter().for_each(|(i, weight)| columns[(i, k)] = weight * parameter.size);
-    }
-    let mut rows: HashMap<usize, Vec<usize>> = HashMap::new();
-    for (i, &cycle) in cycle.iter().enumerate() {
-        rows.entry(cycle).or_default().push(i);
-    }
-    let all = (columns.tr_mul(&columns), columns.tr_mul(left));
-    let noise = left.norm_squared() / left.len().max(1) as f64;
-    let (mut before, mut after) = (0.0, 0.0);
-    let mut numbers: Vec<&usize> = rows.keys().collect();
-    numbers.sort_unstable();
-    for number in numbers {
-        let of_cycle = &rows[number];
-        let (own, own_left) = (columns.select_rows(of_cycle), left.select_rows(of_cycle));
-        let gram = &all.0 - own.tr_mul(&own) + DMatrix::identity(actions.len(), actions.len()) * noise;
-        let Some(root) = gram.cholesky() else { return false };
-        let values = root.solve(&(&all.1 - own.tr_mul(&own_left)));
-        before += own_left.norm_squared();
-        after += (own_left - own * values).norm_squared();
-    }
-    after < before
 }
 
 /// From 0 to 1; nothing where the values do not differ.
@@ -358,7 +312,7 @@ fn places(datum: &Datum) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::rig::datum;
+    use crate::diagnosis::rig::recording::datum;
     use crate::rig::readings::Readings;
 
     fn along(text: &str) -> Option<Entry> {
@@ -366,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn what_yields_along_the_load_does_so_wherever_that_pulls() {
+    fn what_gives_way_along_the_load_does_so_wherever_that_pulls() {
         let (candidate, actions) =
             along("axis,load_n,dy_um,dz_um\n-y,0,0,0\n-y,5,-9,1\n-y,10,-18,2\nz,10,3,30\n").unwrap();
         assert_eq!(candidate.location.to_string(), "load, readings along the load");

@@ -228,9 +228,9 @@ fn a_step_at_one_load_and_a_bend_in_the_line_are_within_the_unknown() {
         })
         .collect();
     let basis = DMatrix::from_columns(&columns);
-    let is_of = |d: &Datum| d.direction.axis == Axis::Z && d.channel == Axis::Z;
+    let is_wanted = |d: &Datum| d.direction.axis == Axis::Z && d.channel == Axis::Z;
     for shape in [|load: f64| f64::from(u8::from(load >= 10.0)), |load: f64| (load - 10.0).max(0.0)] {
-        let values = model.data().iter().map(|d| if is_of(d) { shape(d.load) } else { 0.0 });
+        let values = model.data().iter().map(|d| if is_wanted(d) { shape(d.load) } else { 0.0 });
         let target = DVector::from_iterator(model.data().len(), values);
         let fit = crate::linalg::least_squares(&basis, &target).unwrap();
         assert!((&basis * fit - target).amax() < 1e-12);

@@ -2,8 +2,8 @@
 
 use nalgebra::DVector;
 
-use super::super::{DERIVATIVE_STEP, Location, Parameter, Step, Term, UNKNOWN};
 use super::*;
+use crate::inference::{DERIVATIVE_STEP, Location, Parameter, Step, Term, UNKNOWN};
 
 /// `count` data of 5 cases in sequences of 8; a candidate of each sort of column, and a step
 /// before every datum.

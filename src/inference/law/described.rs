@@ -11,8 +11,8 @@ use super::proposed::{Beside, Law, LawRival, NextRecord, Point};
 use super::remainder::Remainder;
 use super::scan::{Scan, Scanned};
 use super::site::Site;
-use crate::inference::evidence::rms;
-use crate::inference::selection::APART;
+use crate::inference::model::evidence::rms;
+use crate::inference::search::selection::APART;
 use crate::inference::{Evidence, ForwardModel, Term};
 use crate::linalg::least_squares;
 

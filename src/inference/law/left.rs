@@ -9,7 +9,7 @@ use super::proposed::{Law, Second};
 use super::remainder::Remainder;
 use super::scan::{Scan, Scanned, refit, scan_as_recorded};
 use super::site::{Measure, Site};
-use crate::inference::selection::NAMED;
+use crate::inference::search::selection::NAMED;
 use crate::inference::{Evidence, Location};
 
 /// A law's amplitudes are known to so many times what is left.

@@ -7,7 +7,7 @@ use super::form::{Constant, Form, FormConstant};
 use super::remainder::Remainder;
 use super::scan::{SAME, Scanned};
 use super::site::Site;
-use crate::inference::selection::APART;
+use crate::inference::search::selection::APART;
 use crate::statistics::student_t_quantile;
 
 /// Values of s by which its posterior counts in the amplitudes' intervals.

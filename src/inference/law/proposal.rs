@@ -10,9 +10,9 @@ use super::proposed::{Law, Proposed, Refusal};
 use super::remainder::Remainder;
 use super::scan::{prior, refit, scan, scan_as_recorded};
 use super::site::Site;
-use crate::inference::evidence::rms;
-use crate::inference::scatter::weighted;
-use crate::inference::selection::NAMED;
+use crate::inference::model::evidence::rms;
+use crate::inference::noise::scatter::weighted;
+use crate::inference::search::selection::NAMED;
 use crate::inference::{Diagnosis, Evidence, ForwardModel, ShownBy, Term};
 
 /// Laws whose ln odds are so far behind the best are not tried again without each fold.

@@ -12,8 +12,8 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
+use crate::inference::noise::whitening::Whitening;
 use crate::inference::score::{ColumnBlock, Moments, Score};
-use crate::inference::whitening::Whitening;
 use crate::inference::{Evidence, ForwardModel, Term};
 use crate::linalg::{positive_definite_inverse, transposed_product};
 

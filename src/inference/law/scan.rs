@@ -11,8 +11,8 @@ use super::peak::Peak;
 use super::posterior::Posterior;
 use super::remainder::Remainder;
 use super::site::Site;
-use crate::inference::priors::PRIOR;
-use crate::inference::selection::APART;
+use crate::inference::score::priors::PRIOR;
+use crate::inference::search::selection::APART;
 use crate::parallel::in_parallel;
 
 /// So many times the noise a recorded variable ranges over at least.

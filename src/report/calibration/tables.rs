@@ -47,17 +47,25 @@ pub(super) fn errors(calibration: &Calibration, cross_validation: Option<&CrossV
     table
 }
 
+/// What the scatter of a coordinate is called: noise only where somebody states it.
+fn scatter(calibration: &Calibration) -> &'static str {
+    if calibration.noise.is_stated { "noise" } else { "scatter" }
+}
+
 pub(super) fn groups(recording: &Recording, calibration: &Calibration) -> Table {
+    let scatter = scatter(calibration);
     let mut table = Table::new(
         "groups",
-        "Residuals by clamp or socket, and the noise of one coordinate by which each is weighted.",
+        format!(
+            "Residuals by clamp or socket, and the {scatter} of one coordinate by which each is weighted."
+        ),
         vec![
             Column::text("group"),
             Column::number("poses", ""),
             Column::number("mean", "µm"),
             Column::number("max", "µm"),
             Column::number("rms", "µm"),
-            Column::number("noise", "µm"),
+            Column::number(scatter, "µm"),
         ],
     );
     for ((name, count, summary), &noise) in
@@ -210,7 +218,7 @@ pub(super) fn passes(calibration: &Calibration) -> Table {
             Column::number("pass", ""),
             Column::number("largest change of a deflection", "µm"),
             Column::number("rms", "µm"),
-            Column::number("noise of a coordinate", "µm"),
+            Column::number(format!("{} of a coordinate", scatter(calibration)), "µm"),
         ],
     );
     for (index, pass) in (1..).zip(&calibration.passes) {

@@ -349,7 +349,7 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::inference::Limit;
+    use crate::diagnosis::Limitation;
 
     /// What residuals of a fit that stopped anywhere seem to say is no agreement.
     #[test]
@@ -357,10 +357,10 @@ mod tests {
         figures::tests::with_diagnosed(&|_| Vector3::zeros(), |_, found| {
             assert_eq!(json(found)["verdict"], "consistent");
             let mut stopped = found.clone();
-            stopped.limits.push(Limit::NotConverged);
+            stopped.limits.push(Limitation::NotConverged);
             let said = json(&stopped);
             assert_eq!(said["verdict"], "mismatch");
-            assert_eq!(said["headline"], Limit::NotConverged.to_string());
+            assert_eq!(said["headline"], Limitation::NotConverged.to_string());
         });
     }
 }

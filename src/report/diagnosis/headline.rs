@@ -1,7 +1,8 @@
 //! The first lines of a diagnosis: what was found, and what it is worth.
 
 use super::subject::Subject;
-use crate::inference::{Diagnosis, Finding, Kind, Limit};
+use crate::diagnosis::Limitation;
+use crate::inference::{Diagnosis, Finding, Kind};
 use crate::units::{UM, significant};
 
 /// So many findings are said in full; more are named.
@@ -20,9 +21,9 @@ pub const RIVALS_SAID: usize = 2;
 /// What was found, and what it does to the errors.
 pub fn headline(subject: &Subject) -> String {
     // residuals of a fit that stopped somewhere say little, and agree with nothing
-    match subject.limits.contains(&Limit::NotConverged) {
-        true if !subject.diagnosis.is_mismatch() => Limit::NotConverged.to_string(),
-        true => format!("{} {}", Limit::NotConverged, answer(subject)),
+    match subject.limits.contains(&Limitation::NotConverged) {
+        true if !subject.diagnosis.is_mismatch() => Limitation::NotConverged.to_string(),
+        true => format!("{} {}", Limitation::NotConverged, answer(subject)),
         false => answer(subject),
     }
 }

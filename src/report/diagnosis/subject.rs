@@ -3,8 +3,9 @@
 use serde_json::Value;
 
 use super::remainder::Remainder;
+use crate::diagnosis::Limitation;
 use crate::inference::law::Proposed;
-use crate::inference::{Absorbed, Candidate, Diagnosis, Evidence, Limit, NotTestable, Plan, WrittenTo};
+use crate::inference::{Absorbed, Candidate, Diagnosis, Evidence, NotTestable, Plan, WrittenTo};
 use crate::report::Block;
 use crate::report::Section;
 
@@ -21,7 +22,7 @@ pub struct Subject<'a> {
     /// Effects that the base model takes up.
     pub absorbed: &'a [Absorbed],
     /// What makes every claim weaker.
-    pub limits: &'a [Limit],
+    pub limits: &'a [Limitation],
     /// Title of the report.
     pub title: String,
     /// What was recorded: `readings`, `poses`.
@@ -73,7 +74,7 @@ pub struct Subject<'a> {
 impl Subject<'_> {
     /// True where nothing is left out of the model, as far as it could be seen.
     pub fn is_consistent(&self) -> bool {
-        !self.diagnosis.is_mismatch() && !self.limits.contains(&Limit::NotConverged)
+        !self.diagnosis.is_mismatch() && !self.limits.contains(&Limitation::NotConverged)
     }
 
     /// Its own warnings, and the limits of the search.

@@ -88,13 +88,13 @@ impl Estimate {
 mod tests {
     use super::*;
 
-    fn of(value: f64, std_error: f64, dof: usize) -> Estimate {
+    fn estimate(value: f64, std_error: f64, dof: usize) -> Estimate {
         Estimate { value, std_error: Some(std_error), dof }
     }
 
     #[test]
     fn a_sum_adds_variances_and_pools_degrees_of_freedom() {
-        let sum = Estimate::sum(&[of(1.0, 3.0, 4), of(2.0, 4.0, 4)]);
+        let sum = Estimate::sum(&[estimate(1.0, 3.0, 4), estimate(2.0, 4.0, 4)]);
         assert_eq!((sum.value, sum.std_error), (3.0, Some(5.0)));
         // (9 + 16)² / ((81 + 256)/4) = 7.4
         assert_eq!(sum.dof, 7);
@@ -102,31 +102,31 @@ mod tests {
 
     #[test]
     fn pooling_trusts_the_better_one_and_falls_back_to_the_mean() {
-        let pooled = Estimate::pooled(&[of(1.0, 1.0, 9), of(2.0, 0.5, 9)]).unwrap();
+        let pooled = Estimate::pooled(&[estimate(1.0, 1.0, 9), estimate(2.0, 0.5, 9)]).unwrap();
         assert!((pooled.value - 1.8).abs() < 1e-12);
         assert!((pooled.std_error.unwrap() - 0.2f64.sqrt()).abs() < 1e-12);
         let unknown = Estimate { value: 4.0, std_error: None, dof: 0 };
-        assert_eq!(Estimate::pooled(&[of(1.0, 1.0, 9), unknown]).unwrap().value, 2.5);
+        assert_eq!(Estimate::pooled(&[estimate(1.0, 1.0, 9), unknown]).unwrap().value, 2.5);
         assert_eq!(Estimate::pooled(&[]), None);
     }
 
     #[test]
     fn significance_needs_a_standard_error() {
-        assert!(of(10.0, 1.0, 10).is_significant(0.01));
-        assert!(!of(1.0, 1.0, 10).is_significant(0.01));
+        assert!(estimate(10.0, 1.0, 10).is_significant(0.01));
+        assert!(!estimate(1.0, 1.0, 10).is_significant(0.01));
         assert!(!Estimate { value: 10.0, std_error: None, dof: 0 }.is_significant(0.01));
     }
 
     #[test]
     fn the_error_decides_how_many_digits_are_shown() {
-        assert_eq!(of(33.0213, 0.0712, 5).show(1.0), "33.021 ± 0.071");
-        assert_eq!(of(1234.5, 71.2, 5).show(1.0), "1234 ± 71");
-        assert_eq!(of(33.0213e-6, 0.0712e-6, 5).show(1e-6), "33.021 ± 0.071");
+        assert_eq!(estimate(33.0213, 0.0712, 5).show(1.0), "33.021 ± 0.071");
+        assert_eq!(estimate(1234.5, 71.2, 5).show(1.0), "1234 ± 71");
+        assert_eq!(estimate(33.0213e-6, 0.0712e-6, 5).show(1e-6), "33.021 ± 0.071");
     }
 
     /// t(0.975, 4) = 2.776 (any table of Student's t).
     #[test]
     fn the_interval_is_students() {
-        assert!((of(0.0, 1.0, 4).half_width_95().unwrap() - 2.776).abs() < 5e-4);
+        assert!((estimate(0.0, 1.0, 4).half_width_95().unwrap() - 2.776).abs() < 5e-4);
     }
 }

@@ -59,6 +59,6 @@ pub fn beyond(effect: usize, site: &Site, random: &mut Random) -> Effect {
         4 => Effect::Refraction(large(random, 300.0) * UM),
         5 => Effect::Runout { joint: random.index(5), by: large(random, 300.0) * UM, phase: phase(random) },
         6 => Effect::LooseMount(large(random, 300.0) * UM),
-        _ => Effect::Memory(large(random, 3e-4)),
+        _ => Effect::MoveHistory(large(random, 3e-4)),
     }
 }

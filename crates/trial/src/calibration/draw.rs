@@ -171,8 +171,8 @@ pub fn library(effect: usize, site: &Site, random: &mut Random) -> Effect {
             let first = random.index(site.rows.len());
             let second = (first + 1 + random.index(site.rows.len() - 1)) % site.rows.len();
             let mut by = || direction(random) * (large(random, 100.0) * site.scatter.sd);
-            let of = [(first, by()), (second, by())];
-            Effect::Outlier(of[..count].to_vec())
+            let rows = [(first, by()), (second, by())];
+            Effect::Outlier(rows[..count].to_vec())
         }
     }
 }
@@ -242,7 +242,7 @@ pub fn place(effect: &Effect, site: &Site) -> Place {
         },
         Effect::Payload(_) => Place::part("flange"),
         Effect::TipMass(_) => Place::part("tip"),
-        Effect::Lag { .. } | Effect::Memory(_) => Place { joint: Some("all".into()), ..Place::default() },
+        Effect::Lag { .. } | Effect::MoveHistory(_) => Place::all_joints(),
         Effect::Rod(_) => Place::part("rod"),
         Effect::Outlier(rows) => {
             let of_row = |(row, _): &(usize, _)| Place { row: Some(row + 1), ..Place::default() };

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::effect_name::EffectName;
 use rodcal_base::units::{DEG, GRAM, MM, UM, URAD, URAD_PER_NM};
 
 /// Step of a numerical derivative, of the effect's size; of a phase, rad.
@@ -76,7 +77,7 @@ pub enum Effect {
     /// A tool that flops in its mount: along its x by the side to which gravity pulls it, m.
     LooseMount(f64),
     /// Angles that still show some of the move before the last one.
-    Memory(f64),
+    MoveHistory(f64),
 }
 
 /// All numbers of vectors.
@@ -86,41 +87,41 @@ fn all<'a>(vectors: impl IntoIterator<Item = &'a mut Vector3<f64>>) -> Vec<&'a m
 
 impl Effect {
     /// The name of the effect; of those outside the library a name of the generator's own.
-    pub fn name(&self, has_sockets: bool) -> &'static str {
+    pub fn name(&self, has_sockets: bool) -> EffectName {
         match self {
-            Effect::Transmission { .. } => "transmission_error",
-            Effect::Backlash { .. } => "backlash",
-            Effect::Compliance { .. } => "joint_compliance",
-            Effect::Nonlinear { .. } => "joint_nonlinear_stiffness",
-            Effect::EncoderScale { .. } => "encoder_scale",
-            Effect::Coupling { .. } => "wrist_coupling",
-            Effect::ClampPose { .. } => "clamp_pose",
-            Effect::Shift { .. } if has_sockets => "socket_shift",
-            Effect::Shift { .. } => "clamp_shift",
-            Effect::Drift { .. } => "thermal_drift",
-            Effect::Payload(_) => "payload_mass",
-            Effect::TipMass(_) => "tip_mass",
-            Effect::Lag { .. } => "readback_lag",
-            Effect::Rod(_) => "rod_stiffness",
-            Effect::Outlier(_) => "outlier",
-            Effect::ToolShift { .. } => "tool_shift",
-            Effect::BaseShift { .. } => "base_shift",
-            Effect::Spring { .. } => "contact_spring",
-            Effect::Force { .. } => "contact_force_variation",
-            Effect::Level(_) => "gravity_direction",
-            Effect::BaseTilt(_) => "gravity_tilt",
-            Effect::ZeroDrift { .. } => "thermal_drift",
-            Effect::JointShift { .. } => "joint_shift",
-            Effect::Growth { .. } => "thermal_drift",
-            Effect::Friction { .. } => "joint_friction",
-            Effect::LinkTorsion { .. } => "link twists with two joints",
-            Effect::Ball(_) => "ball out of round",
-            Effect::Wear { .. } => "worn tooth",
-            Effect::Disturbance { .. } => "periodic disturbance",
-            Effect::Refraction(_) => "refraction",
-            Effect::Runout { .. } => "bearing that wobbles",
-            Effect::LooseMount(_) => "tool loose in its mount",
-            Effect::Memory(_) => "memory of the move before",
+            Effect::Transmission { .. } => EffectName::TransmissionError,
+            Effect::Backlash { .. } => EffectName::Backlash,
+            Effect::Compliance { .. } => EffectName::JointCompliance,
+            Effect::Nonlinear { .. } => EffectName::JointNonlinearStiffness,
+            Effect::EncoderScale { .. } => EffectName::EncoderScale,
+            Effect::Coupling { .. } => EffectName::WristCoupling,
+            Effect::ClampPose { .. } => EffectName::ClampPose,
+            Effect::Shift { .. } if has_sockets => EffectName::SocketShift,
+            Effect::Shift { .. } => EffectName::ClampShift,
+            Effect::Drift { .. } => EffectName::ThermalDrift,
+            Effect::Payload(_) => EffectName::PayloadMass,
+            Effect::TipMass(_) => EffectName::TipMass,
+            Effect::Lag { .. } => EffectName::ReadbackLag,
+            Effect::Rod(_) => EffectName::RodStiffness,
+            Effect::Outlier(_) => EffectName::Outlier,
+            Effect::ToolShift { .. } => EffectName::ToolShift,
+            Effect::BaseShift { .. } => EffectName::BaseShift,
+            Effect::Spring { .. } => EffectName::ContactSpring,
+            Effect::Force { .. } => EffectName::ContactForceVariation,
+            Effect::Level(_) => EffectName::GravityDirection,
+            Effect::BaseTilt(_) => EffectName::GravityTilt,
+            Effect::ZeroDrift { .. } => EffectName::ThermalDrift,
+            Effect::JointShift { .. } => EffectName::JointShift,
+            Effect::Growth { .. } => EffectName::ThermalDrift,
+            Effect::Friction { .. } => EffectName::JointFriction,
+            Effect::LinkTorsion { .. } => EffectName::LinkTorsion,
+            Effect::Ball(_) => EffectName::BallOutOfRound,
+            Effect::Wear { .. } => EffectName::WornTooth,
+            Effect::Disturbance { .. } => EffectName::PeriodicDisturbance,
+            Effect::Refraction(_) => EffectName::Refraction,
+            Effect::Runout { .. } => EffectName::WobblingBearing,
+            Effect::LooseMount(_) => EffectName::LooseTool,
+            Effect::MoveHistory(_) => EffectName::MoveHistory,
         }
     }
 
@@ -183,12 +184,12 @@ impl Effect {
             Effect::Disturbance { by, period, .. } => vec![("um", by.norm() / UM), ("period_s", *period)],
             Effect::Refraction(per) => vec![("um_per_m2", per / UM)],
             Effect::Runout { by, .. } | Effect::LooseMount(by) => vec![("um", by / UM)],
-            Effect::Memory(share) => vec![("fraction", *share)],
+            Effect::MoveHistory(share) => vec![("fraction", *share)],
         }
     }
 
     /// How many numbers a model needs for it.
-    pub fn freedom(&self) -> f64 {
+    pub fn degrees_of_freedom(&self) -> f64 {
         match self {
             Effect::Transmission { waves, beat, .. } => 2.0 * waves.len() as f64 * beat.map_or(1.0, |_| 3.0),
             Effect::Outlier(rows) => 3.0 * rows.len() as f64,
@@ -237,7 +238,7 @@ impl Effect {
                 | Effect::Refraction(_)
                 | Effect::Runout { .. }
                 | Effect::LooseMount(_)
-                | Effect::Memory(_)
+                | Effect::MoveHistory(_)
         )
     }
 
@@ -274,7 +275,7 @@ impl Effect {
             | Effect::Ball(size)
             | Effect::Refraction(size)
             | Effect::LooseMount(size)
-            | Effect::Memory(size) => vec![size],
+            | Effect::MoveHistory(size) => vec![size],
         }
     }
 
@@ -324,6 +325,6 @@ mod tests {
         assert!((rod.parameters()[0].1 - 1.0 / 1.5).abs() < 1e-12);
         let gear = Effect::Transmission { joint: 0, waves: vec![[3.0, 1e-4, 0.1]; 2], beat: None };
         assert_eq!(gear.larger().len(), 4);
-        assert!(Effect::Memory(0.1).larger().is_empty() && Effect::Memory(0.1).is_beyond());
+        assert!(Effect::MoveHistory(0.1).larger().is_empty() && Effect::MoveHistory(0.1).is_beyond());
     }
 }

@@ -3,16 +3,16 @@
 use nalgebra::{DVector, Matrix4, Vector3};
 
 use super::arm;
-use super::site::{Site, lever};
+use super::site::{Site, tip_jacobian};
 
 /// A row as the robot stands there: frames, torques N·m, and the ball.
-struct Posture {
+struct Configuration {
     frames: Vec<Matrix4<f64>>,
     torques: Vec<f64>,
     at: Vector3<f64>,
 }
 
-impl Posture {
+impl Configuration {
     /// How the ball moves with a turn about an axis through the origin of a frame, m/rad.
     fn about(&self, axis: Vector3<f64>, frame: &Matrix4<f64>) -> Vector3<f64> {
         axis.cross(&(self.at - arm::column(frame, 3)))
@@ -25,14 +25,14 @@ impl Posture {
 /// order.
 pub fn of_robot(site: &Site) -> Vec<DVector<f64>> {
     let n = site.real.len();
-    let posture = |row: usize| {
+    let configuration = |row: usize| {
         let (torques, frames) = site.loads(row);
-        Posture { frames, torques, at: site.ball(row, &site.rows[row].q, &[]) }
+        Configuration { frames, torques, at: site.ball(row, &site.rows[row].q, &[]) }
     };
-    let postures: Vec<Posture> = (0..site.rows.len()).map(posture).collect();
-    let column = |of: &dyn Fn(&Posture) -> Vector3<f64>| {
-        let each = postures.iter().flat_map(|there| <[f64; 3]>::from(of(there)));
-        DVector::from_iterator(3 * postures.len(), each)
+    let configurations: Vec<Configuration> = (0..site.rows.len()).map(configuration).collect();
+    let column = |displacement: &dyn Fn(&Configuration) -> Vector3<f64>| {
+        let each = configurations.iter().flat_map(|there| <[f64; 3]>::from(displacement(there)));
+        DVector::from_iterator(3 * configurations.len(), each)
     };
     let mut columns = Vec::new();
     for j in 0..n {
@@ -40,14 +40,14 @@ pub fn of_robot(site: &Site) -> Vec<DVector<f64>> {
         // before the link was turned by β
         let x =
             |behind: &Matrix4<f64>| arm::column(behind, 0) * beta.cos() + arm::column(behind, 2) * beta.sin();
-        let behind = |there: &Posture| there.frames[j + 1];
-        columns.push(column(&|there| lever(&there.frames[j], &there.at)));
+        let behind = |there: &Configuration| there.frames[j + 1];
+        columns.push(column(&|there| tip_jacobian(&there.frames[j], &there.at)));
         columns.push(column(&|there| arm::column(&there.frames[j], 2)));
         columns.push(column(&|there| x(&behind(there))));
         columns.push(column(&|there| there.about(x(&behind(there)), &behind(there))));
         columns.push(column(&|there| there.about(arm::column(&behind(there), 1), &behind(there))));
         if site.has_masses {
-            columns.push(column(&|there| lever(&there.frames[j], &there.at) * there.torques[j]));
+            columns.push(column(&|there| tip_jacobian(&there.frames[j], &there.at) * there.torques[j]));
         }
     }
     for axis in 0..3 {

@@ -1,35 +1,21 @@
 //! What may be written down wrongly of a calibration: signs, orders, units, zeros, rows, frames,
 //! files.
-//!
-//! A mistake is drawn only where it shows: where the robot as its file has it then misses a third
-//! of the points by a thirtieth of its reach, by a tenth where only a first guess is wrong.
+
+mod draw;
 
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::ops::Range;
 
-use nalgebra::{Matrix4, Vector3};
+use nalgebra::Matrix4;
 
-use super::arm::{frame, point};
-use super::rod::Rod;
-use super::site::{Devices, Site};
+pub use self::draw::draw;
+
+use super::arm::frame;
+use super::site::{Devices, Row, Site};
 use super::text::{Written, place};
-use crate::chance::happens;
+use crate::effect_name::EffectName;
 use crate::place::Place;
 use crate::rig::drawing::Drawing;
-use rodcal_base::statistics::Random;
 use rodcal_base::units::DEG;
-
-/// Kinds of mistakes that are drawn alike often.
-const KINDS: usize = 17;
-/// Share of the mistakes of rows that only some rows hold, and how large a share of the rows.
-const OF_SOME: f64 = 0.4;
-const STRETCH: (f64, f64) = (0.15, 0.5);
-/// Tries until one shows.
-const TRIES: usize = 200;
-/// Share of the points that are missed, and by how much of the reach; and by how much where only a
-/// first guess is wrong.
-const SHOWS: (f64, f64) = (0.33, 1.0 / 30.0);
-const GUESS: f64 = 0.1;
 
 /// Something that was written wrongly; joints, axes and clamps from 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,129 +67,13 @@ pub enum Mistake {
     Part(Box<Mistake>, [usize; 2]),
 }
 
-/// One that shows in what was written rightly.
-pub fn draw(right: &Written, random: &mut Random) -> Mistake {
-    let n = right.site.nominal.len();
-    let two = |count: usize, random: &mut Random| {
-        let first = random.index(count);
-        let second = (first + 1 + random.index(count.max(2) - 1)) % count.max(1);
-        [first.min(second), first.max(second)]
-    };
-    let rows = right.site.rows.len();
-    for _ in 0..TRIES {
-        let kind = random.index(KINDS);
-        let mistake = match kind {
-            0 => Mistake::JointSign(happens(random, 0.8).then(|| random.index(n))),
-            1 => Mistake::JointOrder(happens(random, 0.8).then(|| two(n, random))),
-            2 => {
-                let quarters = [1, -1, 2][random.index(3)];
-                Mistake::Zero { joint: random.index(n), quarters }
-            }
-            3 => Mistake::Radians,
-            4 => Mistake::AxisSign(random.index(3)),
-            5 => Mistake::AxisOrder(two(3, random)),
-            6 => Mistake::Positions([1000.0, 25.4][random.index(2)]),
-            7 => {
-                let by = [1, -1, 1, 2, -3][random.index(5)];
-                Mistake::Rows { by, with_clamps: happens(random, 0.5) }
-            }
-            8 => Mistake::Groups(two(right.site.groups(), random)),
-            9 => Mistake::ClampsInMetres,
-            10 => Mistake::BaseInverse,
-            11 => Mistake::BaseOrder,
-            12 => Mistake::BaseInMetres,
-            13 => Mistake::ToolOrder(two(3, random)),
-            14 => Mistake::Distance([10.0, 1000.0, 25.4, 1.1, 0.9][random.index(5)]),
-            15 => {
-                let by = [10.0, -10.0, 20.0, -20.0][random.index(4)] * DEG;
-                Mistake::Typed { row: random.index(rows), joint: random.index(n), by }
-            }
-            16 if right.site.rod.is_some() => Mistake::Rod(Box::new(Rod::drawing(random))),
-            _ => Mistake::Stuck(random.index(3)),
-        };
-        let mistake = match mistake.is_of_rows() && happens(random, OF_SOME) {
-            true => {
-                let count = ((rows as f64 * random.uniform(STRETCH.0, STRETCH.1)) as usize).max(3);
-                let first = random.index(rows.saturating_sub(count).max(1));
-                Mistake::Part(Box::new(mistake), [first, (first + count).min(rows)])
-            }
-            false => mistake,
-        };
-        let least = if mistake.is_guess() { GUESS } else { SHOWS.1 };
-        let is_shown = || match mistake {
-            // what no pose shows by itself
-            Mistake::Distance(_) => true,
-            _ => shows(&mistake.made(right), right, mistake.rows(rows), least),
-        };
-        if mistake.is_possible(&right.site) && is_shown() {
-            return mistake;
-        }
-    }
-    Mistake::JointSign(Some(1))
-}
-
 impl Mistake {
-    /// False where the files have no such thing, or where sockets hide it altogether.
-    fn is_possible(&self, site: &Site) -> bool {
-        let n = site.nominal.len();
-        let has_clamps = matches!(site.devices, Devices::Clamps(_));
-        match self {
-            Mistake::Zero { joint, .. } if site.has_sockets() => (1..n - 1).contains(joint),
-            Mistake::AxisSign(_)
-            | Mistake::AxisOrder(_)
-            | Mistake::Positions(_)
-            | Mistake::Stuck(_)
-            | Mistake::BaseInverse
-            | Mistake::BaseOrder
-            | Mistake::BaseInMetres => !site.has_sockets(),
-            Mistake::Rows { with_clamps, .. } => !site.has_sockets() && (has_clamps || !with_clamps),
-            Mistake::Groups(_) | Mistake::ClampsInMetres => has_clamps,
-            Mistake::ToolOrder(_) => site.rod.is_none() && !site.has_sockets(),
-            Mistake::Distance(_) => site.has_sockets(),
-            // a last joint that turns the tip about itself, or a first one, may be anywhere
-            Mistake::Typed { joint, .. } => (1..n - 1).contains(joint),
-            Mistake::Part(whole, _) => whole.is_possible(site),
-            _ => true,
-        }
-    }
-
-    /// True for what acts on rows one by one.
-    fn is_of_rows(&self) -> bool {
-        matches!(
-            self,
-            Mistake::JointSign(_)
-                | Mistake::JointOrder(_)
-                | Mistake::Zero { .. }
-                | Mistake::Radians
-                | Mistake::AxisSign(_)
-                | Mistake::AxisOrder(_)
-                | Mistake::Positions(_)
-        )
-    }
-
-    /// The rows that hold it, of so many.
-    fn rows(&self, count: usize) -> Range<usize> {
-        match self {
-            Mistake::Typed { row, .. } => *row..row + 1,
-            Mistake::Part(_, [first, end]) => *first..*end,
-            _ => 0..count,
-        }
-    }
-
-    /// True where nothing is wrong but a first guess, which a calibration corrects.
-    fn is_guess(&self) -> bool {
-        matches!(
-            self,
-            Mistake::BaseInverse | Mistake::BaseOrder | Mistake::BaseInMetres | Mistake::ToolOrder(_)
-        )
-    }
-
     /// What is written by whoever makes it.
-    pub fn made(&self, right: &Written) -> Written {
+    pub fn applied_to(&self, right: &Written) -> Written {
         let mut wrong = right.clone();
         let site = &mut wrong.site;
-        let joints = |site: &mut Site, of: &dyn Fn(&mut [f64])| {
-            site.rows.iter_mut().for_each(|row| of(&mut row.q));
+        let joints = |site: &mut Site, change: &dyn Fn(&mut [f64])| {
+            site.rows.iter_mut().for_each(|row| change(&mut row.q));
         };
         match self {
             Mistake::JointSign(Some(joint)) => joints(site, &|q| q[*joint] = -q[*joint]),
@@ -253,7 +123,7 @@ impl Mistake {
             }
             Mistake::Typed { row, joint, by } => site.rows[*row].q[*joint] += by,
             Mistake::Part(whole, [first, end]) => {
-                let all = whole.made(right);
+                let all = whole.applied_to(right);
                 for row in *first..*end {
                     site.rows[row] = all.site.rows[row].clone();
                     wrong.read[row] = all.read[row];
@@ -268,21 +138,21 @@ impl Mistake {
     }
 
     /// Its name in a diagnosis.
-    pub fn name(&self) -> &'static str {
+    pub fn name(&self) -> EffectName {
         match self {
-            Mistake::JointSign(_) | Mistake::AxisSign(_) => "sign_mistake",
-            Mistake::JointOrder(_) | Mistake::AxisOrder(_) | Mistake::Groups(_) => "swap_mistake",
-            Mistake::Zero { .. } => "offset_mistake",
+            Mistake::JointSign(_) | Mistake::AxisSign(_) => EffectName::SignMistake,
+            Mistake::JointOrder(_) | Mistake::AxisOrder(_) | Mistake::Groups(_) => EffectName::SwapMistake,
+            Mistake::Zero { .. } => EffectName::OffsetMistake,
             Mistake::Radians | Mistake::Positions(_) | Mistake::ClampsInMetres | Mistake::BaseInMetres => {
-                "unit_mistake"
+                EffectName::UnitMistake
             }
-            Mistake::Rows { .. } => "row_mistake",
-            Mistake::BaseInverse | Mistake::BaseOrder | Mistake::ToolOrder(_) => "frame_mistake",
-            Mistake::Rod(_) => "rod_mistake",
-            Mistake::Stuck(_) => "stuck_sensor",
-            Mistake::Distance(factor) if is_unit(*factor) => "unit_mistake",
-            Mistake::Distance(_) => "distance_mistake",
-            Mistake::Typed { .. } => "typing_mistake",
+            Mistake::Rows { .. } => EffectName::RowMistake,
+            Mistake::BaseInverse | Mistake::BaseOrder | Mistake::ToolOrder(_) => EffectName::FrameMistake,
+            Mistake::Rod(_) => EffectName::RodMistake,
+            Mistake::Stuck(_) => EffectName::StuckSensor,
+            Mistake::Distance(factor) if is_unit(*factor) => EffectName::UnitMistake,
+            Mistake::Distance(_) => EffectName::DistanceMistake,
+            Mistake::Typed { .. } => EffectName::TypingMistake,
             Mistake::Part(whole, _) => whole.name(),
         }
     }
@@ -312,7 +182,7 @@ impl Mistake {
             Mistake::ToolOrder(_) => "tool.xyz_mm".into(),
             Mistake::Rod(_) => "rod-2.toml".into(),
             Mistake::Distance(_) => "sockets.distance_mm".into(),
-            Mistake::Typed { row, joint: of, .. } => format!("{} of pose {}", joint(*of), row + 1),
+            Mistake::Typed { row, joint: typed, .. } => format!("{} of pose {}", joint(*typed), row + 1),
             Mistake::Part(..) => String::new(),
         })
     }
@@ -349,43 +219,18 @@ fn displace(wrong: &mut Written, by: isize, with_clamps: bool) {
     wrong.read = kept.iter().map(|&(_, from)| read[from]).collect();
     let row = |&(at, from): &(usize, usize)| {
         let group = rows[if with_clamps { from } else { at }].group;
-        super::site::Row { group, ..rows[at].clone() }
+        Row { group, ..rows[at].clone() }
     };
     wrong.site.rows = kept.iter().map(row).collect();
 }
 
-/// True where the robot of the files misses many of the points that these rows state: with sockets,
-/// of those that it reached when nothing was written wrongly.
-fn shows(wrong: &Written, right: &Written, rows: Range<usize>, least: f64) -> bool {
-    let reach: f64 = right.site.nominal.iter().map(|l| l.numbers[1].abs() + l.numbers[2].abs()).sum();
-    let stated = |written: &Written, row: usize| {
-        let own = &written.site;
-        let [xyz, rpy] = &written.guess;
-        let frames = super::arm::frames(&own.nominal, &frame(xyz, rpy), &own.rows[row].q);
-        let tip = point(&frames[own.nominal.len()], &own.drawn_tool);
-        let seen = match own.has_sockets() {
-            true => None,
-            false => Some(point(&own.device(own.rows[row].group), &written.read[row])),
-        };
-        (tip, seen)
-    };
-    // where rows were displaced some are gone
-    let rows = rows.start..rows.end.min(wrong.site.rows.len());
-    let count = rows.len();
-    let misses = |row: usize| {
-        let (tip, seen) = stated(wrong, row);
-        let goal: Vector3<f64> = seen.unwrap_or_else(|| stated(right, row).0);
-        (tip - goal).norm() > least * reach
-    };
-    rows.filter(|&row| misses(row)).count() as f64 > SHOWS.0 * count as f64
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::calibration::setup::{self, Needs};
+    use rodcal_base::statistics::Random;
 
-    fn right(device: usize, seed: u64) -> Written {
+    pub(super) fn right(device: usize, seed: u64) -> Written {
         let random = &mut Random::seeded(seed, 0);
         let needs = Needs { device: Some(device), ..Needs::default() };
         let mut site = setup::draw(needs, &[], random);
@@ -396,40 +241,20 @@ mod tests {
     }
 
     #[test]
-    fn what_is_right_shows_nothing_and_what_is_drawn_shows() {
-        let mut names = std::collections::BTreeSet::new();
-        for device in 0..3 {
-            let right = right(device, 4);
-            let rows = right.site.rows.len();
-            assert!(!shows(&right, &right, 0..rows, SHOWS.1));
-            let files = crate::calibration::text::files(&right);
-            for seed in 0..30 {
-                let mistake = draw(&right, &mut Random::seeded(seed, 1));
-                let wrong = mistake.made(&right);
-                let is_shown = shows(&wrong, &right, mistake.rows(rows), SHOWS.1);
-                assert!(is_shown || matches!(mistake, Mistake::Distance(_)), "{mistake:?}");
-                assert!(crate::calibration::text::files(&wrong) != files);
-                names.insert(mistake.name());
-            }
-        }
-        assert!(names.len() >= 6, "{names:?}");
-    }
-
-    #[test]
     fn what_some_rows_hold_leaves_the_others_alone() {
         let right = right(0, 3);
         let part = Mistake::Part(Box::new(Mistake::JointSign(Some(2))), [4, 9]);
-        let wrong = part.made(&right);
+        let wrong = part.applied_to(&right);
         for (row, (own, other)) in wrong.site.rows.iter().zip(&right.site.rows).enumerate() {
             assert_eq!(own.q[2] == other.q[2], !(4..9).contains(&row), "row {row}");
         }
-        assert_eq!((part.name(), part.place(&right.site)), ("sign_mistake", Place::key("q3_deg")));
+        assert_eq!((part.name(), part.place(&right.site)), (EffectName::SignMistake, Place::key("q3_deg")));
     }
 
     #[test]
     fn rows_that_are_displaced_lose_the_ends() {
         let right = right(1, 2);
-        let wrong = Mistake::Rows { by: 2, with_clamps: false }.made(&right);
+        let wrong = Mistake::Rows { by: 2, with_clamps: false }.applied_to(&right);
         assert_eq!((wrong.read.len(), wrong.site.rows.len()), (right.read.len() - 2, right.read.len() - 2));
         // what stands in a row was measured two rows above
         assert_eq!((wrong.read[0], &wrong.site.rows[0].q), (right.read[0], &right.site.rows[2].q));

@@ -60,20 +60,20 @@ impl Scatter {
     }
 
     /// For people: `student-t (5), correlated 0.35, clamp 2 × 3.1`.
-    pub fn words(&self) -> String {
-        let mut words = match &self.shape {
+    pub fn description(&self) -> String {
+        let mut description = match &self.shape {
             Shape::Normal => "normal".to_owned(),
             Shape::StudentT(freedom) => format!("student-t ({freedom})"),
             Shape::Bootstrap(residuals) => format!("{} residuals of a recording", residuals.len()),
         };
         if self.correlation > 0.0 {
-            words += &format!(", correlated {:.2}", self.correlation);
+            description += &format!(", correlated {:.2}", self.correlation);
         }
         let unequal = self.of_group.iter().enumerate().filter(|(_, factor)| **factor != 1.0);
         for (group, factor) in unequal {
-            words += &format!(", fixture {} × {factor:.1}", group + 1);
+            description += &format!(", fixture {} × {factor:.1}", group + 1);
         }
-        words
+        description
     }
 
     fn of(&self, group: usize) -> f64 {

@@ -2,7 +2,7 @@
 //! what the calibration and the numbers of the files take up.
 //!
 //! The measure is the rig's (`rig/oracle.rs`): with Σ₀ the covariance of the noise, N what a
-//! standard uncertainty of each number does (`taken_up.rs`), Σ = Σ₀ + N·Nᵀ, δ what an effect adds
+//! standard uncertainty of each number does (`nuisance.rs`), Σ = Σ₀ + N·Nᵀ, δ what an effect adds
 //! and C what a rival can add,
 //!
 //! ```text
@@ -20,10 +20,11 @@ use nalgebra::{DMatrix, DVector};
 
 use super::draw::place;
 use super::effect::Effect;
+use super::nuisance;
 use super::rivals::{Rival, rivals};
 use super::site::Site;
-use super::taken_up;
-use crate::truth::Detectability;
+use crate::effect_name::EffectName;
+use crate::ground_truth::Detectability;
 use rodcal_base::linalg::{thin_svd, transposed_product};
 
 /// Effects of other names closer than this cannot be distinguished; places of one effect closer
@@ -49,7 +50,7 @@ pub struct Oracle<'a> {
 impl<'a> Oracle<'a> {
     /// One that compares with nothing being wrong only.
     pub fn new(site: &'a Site) -> Self {
-        let (columns, _) = taken_up::columns(site);
+        let (columns, _) = nuisance::columns(site);
         let more = columns.nrows() - 3 * site.rows.len();
         let directions = thin_svd(&columns).map_or_else(
             |_| (DMatrix::zeros(columns.nrows(), 0), DVector::zeros(0)),
@@ -107,7 +108,7 @@ impl<'a> Oracle<'a> {
         let square = self.added(std::slice::from_ref(effect), &[]).norm_squared();
         let evidence = |share: f64| {
             let square = share * share * square;
-            0.5 * square - 0.5 * effect.freedom() * square.ln_1p()
+            0.5 * square - 0.5 * effect.degrees_of_freedom() * square.ln_1p()
         };
         let (mut low, mut high) = (1e-6f64, 1e6f64);
         for _ in 0..60 {
@@ -128,14 +129,14 @@ impl<'a> Oracle<'a> {
         let effect = &effects[which];
         let separation = |columns: &[DVector<f64>]| evidence(effect, &delta, &given, columns);
         let own = effect.name(self.site.has_sockets());
-        let mut best: BTreeMap<&str, f64> = BTreeMap::new();
+        let mut best: BTreeMap<&EffectName, f64> = BTreeMap::new();
         let mut places = vec![place(effect, self.site)];
         let mut alone: Vec<(f64, &Rival)> = Vec::new();
         for rival in &self.rivals {
             let apart = separation(&rival.columns);
             alone.push((apart, rival));
             if rival.name != own {
-                let least = best.entry(rival.name).or_insert(f64::INFINITY);
+                let least = best.entry(&rival.name).or_insert(f64::INFINITY);
                 *least = least.min(apart);
             } else if apart < SAME_PLACE && !places.contains(&rival.place) {
                 places.push(rival.place.clone());
@@ -153,8 +154,8 @@ impl<'a> Oracle<'a> {
             against_none: separation(&[]),
             against_rival: nearest.map_or(f64::MAX, |(_, apart)| *apart),
             against_pair: effect.is_beyond().then(|| pairs.fold(f64::MAX, f64::min)),
-            best_rival: nearest.map_or_else(String::new, |(name, _)| (*name).to_owned()),
-            class: best.iter().filter(|(_, a)| **a < SAME_EFFECT).map(|(n, _)| (*n).to_owned()).collect(),
+            best_rival: nearest.map_or_else(String::new, |(name, _)| name.to_string()),
+            class: best.iter().filter(|(_, a)| **a < SAME_EFFECT).map(|(name, _)| (*name).clone()).collect(),
             places,
             stations_mm: None,
         }
@@ -170,12 +171,12 @@ impl<'a> Oracle<'a> {
 }
 
 fn evidence(effect: &Effect, delta: &DVector<f64>, given: &[DVector<f64>], columns: &[DVector<f64>]) -> f64 {
-    let square = remainder(delta, given, columns);
-    0.5 * square - 0.5 * effect.freedom() * square.ln_1p()
+    let square = squared_distance(delta, given, columns);
+    0.5 * square - 0.5 * effect.degrees_of_freedom() * square.ln_1p()
 }
 
 /// min over α, β of |δ − Gα − Cβ|² + |α|² + |β|².
-fn remainder(delta: &DVector<f64>, given: &[DVector<f64>], columns: &[DVector<f64>]) -> f64 {
+fn squared_distance(delta: &DVector<f64>, given: &[DVector<f64>], columns: &[DVector<f64>]) -> f64 {
     let all: Vec<&DVector<f64>> = given.iter().chain(columns).collect();
     let k = all.len();
     let mut normal = DMatrix::from_fn(k, k, |i, j| all[i].dot(all[j]));

@@ -5,7 +5,8 @@ use nalgebra::{DVector, Matrix4, Vector3};
 use super::arm;
 use super::draw::shift_place;
 use super::effect::Effect;
-use super::site::{Devices, Site, lever};
+use super::site::{Devices, Site, tip_jacobian};
+use crate::effect_name::EffectName;
 use crate::place::Place;
 use rodcal_base::units::UM;
 
@@ -19,7 +20,7 @@ const COARSE: usize = 6;
 
 /// An effect that might be in the place of another one.
 pub struct Rival {
-    pub name: &'static str,
+    pub name: EffectName,
     pub place: Place,
     /// What they do to every coordinate, m; to the oracle without what numbers take up, in noises.
     pub columns: Vec<DVector<f64>>,
@@ -35,18 +36,19 @@ struct List<'a> {
 }
 
 impl List<'_> {
-    fn add(&mut self, name: &'static str, place: Place, columns: Vec<DVector<f64>>) {
+    fn add(&mut self, name: EffectName, place: Place, columns: Vec<DVector<f64>>) {
         self.rivals.push(Rival { name, place, columns });
     }
 
     /// A displacement for every row, m.
-    fn column(&self, of: impl Fn(usize) -> Vector3<f64>) -> DVector<f64> {
-        self.site.each(|row, _| of(row))
+    fn column(&self, displacement: impl Fn(usize) -> Vector3<f64>) -> DVector<f64> {
+        self.site.each(|row, _| displacement(row))
     }
 
     /// The same along three axes.
-    fn three(&self, of: impl Fn(usize, &Vector3<f64>) -> Vector3<f64>) -> Vec<DVector<f64>> {
-        [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| self.column(|row| of(row, &axis))).to_vec()
+    fn three(&self, displacement: impl Fn(usize, &Vector3<f64>) -> Vector3<f64>) -> Vec<DVector<f64>> {
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+        axes.map(|axis| self.column(|row| displacement(row, &axis))).to_vec()
     }
 
     /// So many times what an effect does.
@@ -54,8 +56,8 @@ impl List<'_> {
         self.site.added(&[effect], &[]) * times
     }
 
-    fn lever(&self, row: usize, joint: usize) -> Vector3<f64> {
-        lever(&self.loads[row].1[joint], &self.at[row])
+    fn tip_jacobian(&self, row: usize, joint: usize) -> Vector3<f64> {
+        tip_jacobian(&self.loads[row].1[joint], &self.at[row])
     }
 
     fn flange(&self, row: usize) -> &Matrix4<f64> {
@@ -83,8 +85,8 @@ fn of_joints(list: &mut List<'_>) {
     let step = |row: usize, j: usize| angle(row, j) - angle(row.saturating_sub(1), j);
     for j in 0..n {
         let joint = Place::joint(j);
-        let turn = |list: &List<'_>, j: usize, of: &dyn Fn(usize) -> f64| {
-            list.column(|row| list.lever(row, j) * (TURN * of(row)))
+        let turn = |list: &List<'_>, j: usize, weight: &dyn Fn(usize) -> f64| {
+            list.column(|row| list.tip_jacobian(row, j) * (TURN * weight(row)))
         };
         let mut slow = Vec::new();
         for k in 1..=76 {
@@ -94,62 +96,62 @@ fn of_joints(list: &mut List<'_>) {
             if k % 2 == 0 && k <= 10 {
                 slow.extend(columns.clone());
             }
-            list.add("transmission_error", joint.clone(), columns);
+            list.add(EffectName::TransmissionError, joint.clone(), columns);
         }
-        list.add("transmission_error", joint.clone(), slow);
+        list.add(EffectName::TransmissionError, joint.clone(), slow);
         let torques: Vec<f64> = (0..rows).map(|row| list.loads[row].0[j]).collect();
         let largest = torques.iter().fold(0.0, |most: f64, torque| most.max(torque.abs()));
-        let mut one = |name: &'static str, of: &dyn Fn(usize) -> f64| {
-            let column = turn(list, j, of);
+        let mut one = |name: EffectName, weight: &dyn Fn(usize) -> f64| {
+            let column = turn(list, j, weight);
             list.add(name, joint.clone(), vec![column]);
         };
-        one("encoder_scale", &|row| angle(row, j));
-        one("readback_lag", &|row| step(row, j));
-        one("backlash", &|row| site.approach(row, j));
+        one(EffectName::EncoderScale, &|row| angle(row, j));
+        one(EffectName::ReadbackLag, &|row| step(row, j));
+        one(EffectName::Backlash, &|row| site.approach(row, j));
         if largest > 0.1 {
             let share = |row: usize| torques[row] / largest;
-            one("joint_compliance", &share);
+            one(EffectName::JointCompliance, &share);
             if site.has_masses {
-                one("backlash", &|row| share(row).signum());
-                one("joint_nonlinear_stiffness", &|row| share(row) * share(row).abs());
-                one("joint_nonlinear_stiffness", &|row| share(row).powi(3));
-                one("joint_friction", &|row| share(row).abs() * site.approach(row, j));
+                one(EffectName::Backlash, &|row| share(row).signum());
+                one(EffectName::JointNonlinearStiffness, &|row| share(row) * share(row).abs());
+                one(EffectName::JointNonlinearStiffness, &|row| share(row).powi(3));
+                one(EffectName::JointFriction, &|row| share(row).abs() * site.approach(row, j));
             }
         }
         for to in [j.wrapping_sub(1), j + 1] {
             if j.min(to) >= n - 3 && to < n {
                 let place = Place { driven_by: Some(j + 1), ..Place::joint(to) };
                 let column = turn(list, to, &|row| angle(row, j));
-                list.add("wrist_coupling", place, vec![column]);
+                list.add(EffectName::WristCoupling, place, vec![column]);
             }
         }
     }
-    let all = list.column(|row| (0..n).map(|j| list.lever(row, j) * (TURN * step(row, j))).sum());
-    list.add("readback_lag", Place { joint: Some("all".into()), ..Place::default() }, vec![all]);
+    let all = list.column(|row| (0..n).map(|j| list.tip_jacobian(row, j) * (TURN * step(row, j))).sum());
+    list.add(EffectName::ReadbackLag, Place::all_joints(), vec![all]);
 }
 
 fn of_loads(list: &mut List<'_>) {
     let site = list.site;
     if site.has_masses {
         let payload = list.changed(Effect::Payload(0.1), 50.0);
-        list.add("payload_mass", Place::part("flange"), vec![payload]);
+        list.add(EffectName::PayloadMass, Place::part("flange"), vec![payload]);
         let tilt = list.changed(Effect::BaseTilt(1e-8), 1000.0);
-        list.add("gravity_tilt", Place::part("base"), vec![tilt]);
+        list.add(EffectName::GravityTilt, Place::part("base"), vec![tilt]);
     }
     if site.has_masses || site.rod.is_some() {
         let mass = list.changed(Effect::TipMass(0.01), 30.0);
-        list.add("tip_mass", Place::part("tip"), vec![mass]);
+        list.add(EffectName::TipMass, Place::part("tip"), vec![mass]);
         let level = [[1e-3, 0.0], [0.0, 1e-3]].map(|turn| list.changed(Effect::Level(turn), 100.0));
-        list.add("gravity_direction", Place::part("base"), level.to_vec());
+        list.add(EffectName::GravityDirection, Place::part("base"), level.to_vec());
     }
     if let Some(rod) = &site.rod {
         let softer = list.changed(Effect::Rod(0.01), 60.0);
-        list.add("rod_stiffness", Place::part("rod"), vec![softer]);
+        list.add(EffectName::RodStiffness, Place::part("rod"), vec![softer]);
         let own = list.column(|row| {
             let flange = list.flange(row).fixed_view::<3, 3>(0, 0).into_owned();
             flange * rod.per_gravity * flange.transpose() * site.gravity * 0.6
         });
-        list.add("rod_stiffness", Place::part("rod"), vec![own]);
+        list.add(EffectName::RodStiffness, Place::part("rod"), vec![own]);
     }
 }
 
@@ -165,16 +167,16 @@ fn of_drift(list: &mut List<'_>) {
             continue;
         }
         let world = list.three(|row, axis| axis * (DRIFT * course(row)));
-        list.add("thermal_drift", Place::part("base"), world);
+        list.add(EffectName::ThermalDrift, Place::part("base"), world);
         let own = list.three(|row, axis| arm::turned(list.flange(row), axis) * (DRIFT * course(row)));
-        list.add("thermal_drift", Place::part("tool"), own);
+        list.add(EffectName::ThermalDrift, Place::part("tool"), own);
         let base = arm::column(&site.base, 3);
         let longer = |row: usize| arm::column(list.flange(row), 3) - base;
         let growth = list.column(|row| longer(row) * (DRIFT * course(row)));
-        list.add("thermal_drift", Place::part("arm"), vec![growth]);
+        list.add(EffectName::ThermalDrift, Place::part("arm"), vec![growth]);
         for j in 0..site.nominal.len() {
-            let zero = list.column(|row| list.lever(row, j) * (TURN * course(row)));
-            list.add("thermal_drift", Place::joint(j), vec![zero]);
+            let zero = list.column(|row| list.tip_jacobian(row, j) * (TURN * course(row)));
+            list.add(EffectName::ThermalDrift, Place::joint(j), vec![zero]);
         }
     }
 }
@@ -184,20 +186,20 @@ fn of_fixtures(list: &mut List<'_>) {
     if matches!(site.devices, Devices::Tracker(_)) {
         return;
     }
-    let shift = if site.has_sockets() { "socket_shift" } else { "clamp_shift" };
+    let shift = if site.has_sockets() { EffectName::SocketShift } else { EffectName::ClampShift };
     for group in 0..site.groups() {
         let own: Vec<usize> = (0..site.rows.len()).filter(|&row| site.rows[row].group == group).collect();
         let here = |is: bool, v: Vector3<f64>| if is { v * MOVE } else { Vector3::zeros() };
         for &from in own.iter().skip(2).take(own.len().saturating_sub(3)) {
             let columns = list.three(|row, axis| here(row >= from && site.rows[row].group == group, *axis));
-            list.add(shift, shift_place(site, group, from), columns);
+            list.add(shift.clone(), shift_place(site, group, from), columns);
         }
         if let Devices::Clamps(clamps) = &site.devices {
             let from = arm::column(&clamps[group], 3);
             let is_here = |row: usize| site.rows[row].group == group;
             let mut six = list.three(|row, axis| here(is_here(row), *axis));
             six.extend(list.three(|row, axis| here(is_here(row), axis.cross(&(list.at[row] - from)))));
-            list.add("clamp_pose", Place::named(&site.group_name(group)), six);
+            list.add(EffectName::ClampPose, Place::named(&site.group_name(group)), six);
         }
     }
     if !matches!(site.devices, Devices::Clamps(_)) || !site.has_masses && site.rod.is_none() {
@@ -206,11 +208,11 @@ fn of_fixtures(list: &mut List<'_>) {
     for group in std::iter::once(None).chain((0..site.groups()).map(Some)) {
         let place = Place::named(&group.map_or("all clamps".to_owned(), |group| site.group_name(group)));
         let spring = list.changed(Effect::Spring { group, rate: 10.0 }, 50.0);
-        list.add("contact_spring", place.clone(), vec![spring]);
+        list.add(EffectName::ContactSpring, place.clone(), vec![spring]);
         let force =
             (0..3).map(|axis| list.changed(Effect::Force { group, by: Vector3::ith(axis, 0.01) }, 100.0));
         let force = force.collect();
-        list.add("contact_force_variation", place, force);
+        list.add(EffectName::ContactForceVariation, place, force);
     }
 }
 
@@ -230,25 +232,26 @@ fn of_moves(list: &mut List<'_>, effects: &[Effect]) {
         let later = |row: usize, v: Vector3<f64>| if row >= from { v * MOVE } else { Vector3::zeros() };
         if is_tried(from, moves_tool) {
             let columns = list.three(|row, axis| later(row, arm::turned(list.flange(row), axis)));
-            list.add("tool_shift", after(Some("tool")), columns);
+            list.add(EffectName::ToolShift, after(Some("tool")), columns);
         }
         if is_tried(from, slips) {
             for j in 0..site.nominal.len() {
-                let turned =
-                    list.column(|row| if row >= from { list.lever(row, j) * TURN } else { Vector3::zeros() });
+                let turned = list.column(|row| {
+                    if row >= from { list.tip_jacobian(row, j) * TURN } else { Vector3::zeros() }
+                });
                 let place = Place { after_row: Some(from), ..Place::joint(j) };
-                list.add("joint_shift", place, vec![turned]);
+                list.add(EffectName::JointShift, place, vec![turned]);
             }
         }
         if is_tried(from, moves_base) && !site.has_sockets() {
             let mut six = list.three(|row, axis| later(row, *axis));
             six.extend(list.three(|row, axis| later(row, axis.cross(&(list.at[row] - base)))));
-            list.add("base_shift", after(None), six);
+            list.add(EffectName::BaseShift, after(None), six);
         }
     }
     for row in 0..rows {
         let size = 100.0 * site.scatter.sd;
         let columns = list.three(|r, axis| if r == row { axis * size } else { Vector3::zeros() });
-        list.add("outlier", Place { row: Some(row + 1), ..Place::default() }, columns);
+        list.add(EffectName::Outlier, Place { row: Some(row + 1), ..Place::default() }, columns);
     }
 }

@@ -219,9 +219,11 @@ pub fn pose(site: &Site, row: usize, random: &mut Random) -> Vec<f64> {
             }
             Devices::Clamps(clamps) => {
                 let target = arm::point(&clamps[site.rows[row].group], &site.rows[row].aside);
-                site.reach(row, &start, &target, &[])
+                site.joints_at(row, &start, &target, &[])
             }
-            Devices::Sockets(sockets, _) => site.reach(row, &start, &sockets[site.rows[row].group].2, &[]),
+            Devices::Sockets(sockets, _) => {
+                site.joints_at(row, &start, &sockets[site.rows[row].group].2, &[])
+            }
         };
         if let Some(q) = found {
             let is_within = q.iter().all(|q| q.abs() < LARGEST);
@@ -252,7 +254,7 @@ pub fn measured(
         for (row, noise) in (first..).zip(noise) {
             let target = sockets[site.rows[row].group].2 + noise;
             let start = site.rows[row].q.clone();
-            if let Some(q) = site.reach(row, &start, &target, effects) {
+            if let Some(q) = site.joints_at(row, &start, &target, effects) {
                 site.rows[row].q = q;
             }
         }
@@ -266,7 +268,7 @@ pub fn measured(
             let at = &site.rows[row];
             let target = arm::point(&clamps[at.group], &at.aside);
             let start = at.q.clone();
-            if let Some(q) = site.reach(row, &start, &target, &still) {
+            if let Some(q) = site.joints_at(row, &start, &target, &still) {
                 site.rows[row].q = as_shown(&q);
             }
         }

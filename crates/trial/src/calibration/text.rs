@@ -6,8 +6,8 @@ use std::fmt::Write;
 use nalgebra::{Matrix4, Vector3};
 
 use super::arm::Known;
+use super::nuisance::DISTANCE_SD;
 use super::site::{Devices, Site};
-use super::taken_up::DISTANCE_SD;
 use crate::rig::drawing::{Drawing, rounded};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{DEG, MM, UM};
@@ -50,7 +50,7 @@ pub fn files(Written { site, guess, read, others }: &Written) -> Vec<(String, St
 }
 
 /// The files of poses that are asked for, the first row left out; `force` is on the ball, N.
-pub fn question(site: &Site, force: &Vector3<f64>) -> Vec<(String, String)> {
+pub fn query(site: &Site, force: &Vector3<f64>) -> Vec<(String, String)> {
     let mut text = FIRST.to_owned()
         + "# It asks: where would the ball be in these poses, with this force on it and with this rod? A 0 stands for each \
            coordinate.\nrobot = \"robot.toml\"\nmeasurements = \"asked.csv\"\n";

@@ -40,18 +40,18 @@ impl Actual {
     /// Every number of `drawing` and of readings at `stations` (m), off by normal errors `times` as
     /// large as stated.
     pub fn drawn(drawing: &Drawing, stations: &[f64], times: f64, random: &mut Random) -> Actual {
-        let of = drawing.tubes.each_ref().map(|tube| drawing.uncertainty_of(tube));
-        let length = of[0].length;
+        let stated = drawing.tubes.each_ref().map(|tube| drawing.uncertainty_of(tube));
+        let length = stated[0].length;
         let is_one_material = drawing.tubes[0].material == drawing.tubes[1].material;
         let mut numbers = Vec::new();
-        for (k, of) in of.iter().enumerate() {
+        for (k, tube) in stated.iter().enumerate() {
             if k == 0 || !is_one_material {
-                numbers.push((Number::Youngs(k), of.youngs_modulus));
-                numbers.push((Number::Shear(k), of.shear_modulus));
-                numbers.push((Number::Coefficient(k), of.shear_coefficient));
+                numbers.push((Number::Youngs(k), tube.youngs_modulus));
+                numbers.push((Number::Shear(k), tube.shear_modulus));
+                numbers.push((Number::Coefficient(k), tube.shear_coefficient));
             }
-            numbers.push((Number::Outer(k), of.diameter));
-            numbers.push((Number::Inner(k), of.diameter));
+            numbers.push((Number::Outer(k), tube.diameter));
+            numbers.push((Number::Inner(k), tube.diameter));
             numbers.push((Number::Leg(k), length));
             numbers.push((Number::Sensor(k), SCALE));
         }

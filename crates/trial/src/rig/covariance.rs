@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_softer_rod_is_mostly_taken_up_and_a_single_step_is_not() {
+    fn a_softer_rod_is_mostly_nuisance_and_a_single_step_is_not() {
         let bench = drawn(0, &bench());
         let covariance = Covariance::new(&bench, &Noise::normal(1e-6));
         let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();

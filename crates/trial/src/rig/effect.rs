@@ -1,7 +1,8 @@
 //! What may be wrong with a rig, with its names and numbers as a diagnosis states them.
 
 use super::protocol::{AXES, Protocol};
-use crate::place::Place;
+use crate::effect_name::EffectName;
+use crate::place::{Axes, Place};
 use rodcal_base::units::{DEG, MM, UM, URAD_PER_NM};
 
 /// Something that is wrong, SI.
@@ -82,42 +83,42 @@ pub enum Effect {
     /// A damped slide: this share of a change of the load comes late, with this time constant, s.
     Damping { share: f64, time: f64 },
     /// A clamp that slips little by little: `per_newton`·z, m, along the load, z (N) by the
-    /// equation of Bouc and Wen. Made to order only.
-    SlippingClamp { per_newton: f64, yields: f64, sharpness: f64, balance: f64 },
+    /// equation of Bouc and Wen. SimulatedCase to order only.
+    SlippingClamp { per_newton: f64, yield_load: f64, sharpness: f64, balance: f64 },
 }
 
 impl Effect {
     /// The name of the effect; of those outside the library a name of the generator's own.
-    pub fn name(&self) -> &'static str {
+    pub fn name(&self) -> EffectName {
         match self {
-            Effect::StiffnessScale(_) => "stiffness_scale",
-            Effect::ShearModulus(_) => "shear_modulus",
-            Effect::Joint { .. } => "joint_compliance",
-            Effect::Root { .. } => "root_compliance",
-            Effect::Bend(_) => "bend_flexibility",
-            Effect::Friction { .. } => "friction",
-            Effect::LoadOffset { .. } => "load_offset",
-            Effect::Backlash { .. } => "backlash",
-            Effect::Creep { .. } => "creep",
-            Effect::Hysteresis { .. } => "hysteresis",
-            Effect::Cubic(_) | Effect::Quadratic(_) => "nonlinear_stiffness",
-            Effect::SensorScale { .. } => "sensor_scale",
-            Effect::SensorMisalignment { .. } | Effect::SensorBlock(_) => "sensor_misalignment",
-            Effect::LoadMisalignment { .. } | Effect::LoadFrame(_) => "load_misalignment",
-            Effect::Drift { .. } | Effect::DriftOfAll { .. } => "thermal_drift",
-            Effect::Slip { .. } | Effect::Shift { .. } => "slip",
-            Effect::Outlier(_) => "outlier",
-            Effect::GapCloses { .. } => "a gap that closes",
-            Effect::Ripple { .. } => "sensor ripple",
-            Effect::Seat(_) => "Hertzian seat",
-            Effect::RunningIn { .. } => "running in",
-            Effect::Saturation { .. } => "sensor saturation",
-            Effect::LooseClamp(_) => "clamp loose one way",
-            Effect::Oscillation { .. } => "oscillation in time",
-            Effect::Waviness { .. } => "wall that varies along the rod",
-            Effect::LoadBefore(_) => "memory of the load before",
-            Effect::Damping { .. } => "damped slide",
-            Effect::SlippingClamp { .. } => "clamp that slips little by little",
+            Effect::StiffnessScale(_) => EffectName::StiffnessScale,
+            Effect::ShearModulus(_) => EffectName::ShearModulus,
+            Effect::Joint { .. } => EffectName::JointCompliance,
+            Effect::Root { .. } => EffectName::RootCompliance,
+            Effect::Bend(_) => EffectName::BendFlexibility,
+            Effect::Friction { .. } => EffectName::Friction,
+            Effect::LoadOffset { .. } => EffectName::LoadOffset,
+            Effect::Backlash { .. } => EffectName::Backlash,
+            Effect::Creep { .. } => EffectName::Creep,
+            Effect::Hysteresis { .. } => EffectName::Hysteresis,
+            Effect::Cubic(_) | Effect::Quadratic(_) => EffectName::NonlinearStiffness,
+            Effect::SensorScale { .. } => EffectName::SensorScale,
+            Effect::SensorMisalignment { .. } | Effect::SensorBlock(_) => EffectName::SensorMisalignment,
+            Effect::LoadMisalignment { .. } | Effect::LoadFrame(_) => EffectName::LoadMisalignment,
+            Effect::Drift { .. } | Effect::DriftOfAll { .. } => EffectName::ThermalDrift,
+            Effect::Slip { .. } | Effect::Shift { .. } => EffectName::Slip,
+            Effect::Outlier(_) => EffectName::Outlier,
+            Effect::GapCloses { .. } => EffectName::GapThatCloses,
+            Effect::Ripple { .. } => EffectName::SensorRipple,
+            Effect::Seat(_) => EffectName::HertzianSeat,
+            Effect::RunningIn { .. } => EffectName::RunningIn,
+            Effect::Saturation { .. } => EffectName::SensorSaturation,
+            Effect::LooseClamp(_) => EffectName::ClampLooseOneWay,
+            Effect::Oscillation { .. } => EffectName::OscillationInTime,
+            Effect::Waviness { .. } => EffectName::VaryingWall,
+            Effect::LoadBefore(_) => EffectName::LoadHistory,
+            Effect::Damping { .. } => EffectName::DampedSlide,
+            Effect::SlippingClamp { .. } => EffectName::SlippingClamp,
         }
     }
 
@@ -128,7 +129,7 @@ impl Effect {
             None => Place::part(part),
         };
         let channel = |channel: usize| Some(format!("d{}", AXES[channel]));
-        let of_channel = |of: usize| Place { channel: channel(of), ..Place::default() };
+        let of_channel = |index: usize| Place { channel: channel(index), ..Place::default() };
         match self {
             Effect::Joint { name: Some(name), .. } => Place::named(name),
             Effect::Joint { station, .. } => Place { station_mm: Some(station / MM), ..Place::default() },
@@ -148,30 +149,26 @@ impl Effect {
             }
             Effect::LoadMisalignment { axis, towards, frame: true, .. } => {
                 let (a, b) = (axis.min(towards), axis.max(towards));
-                let axes = vec![AXES[*a], AXES[*b]];
-                Place {
-                    loads_along: Some(axes.into()),
-                    about: Some(AXES[3 - a - b].into()),
-                    ..Place::default()
-                }
+                let axes = Axes::Two([AXES[*a].into(), AXES[*b].into()]);
+                Place { loads_along: Some(axes), about: Some(AXES[3 - a - b].into()), ..Place::default() }
             }
             Effect::LoadMisalignment { axis, towards, .. } => {
                 let place = Place::default().loads_along(AXES[*axis]);
                 Place { towards: Some(AXES[*towards].into()), ..place }
             }
-            Effect::Slip { loading, channel: of, .. } => {
-                let is_along = protocol.loadings.get(*loading).is_none_or(|l| l.axis == *of);
+            Effect::Slip { loading, channel: own, .. } => {
+                let is_along = protocol.loadings.get(*loading).is_none_or(|l| l.axis == *own);
                 Place {
                     after_row: Some(*loading),
-                    channel: channel(*of).filter(|_| !is_along),
+                    channel: channel(*own).filter(|_| !is_along),
                     ..protocol.run_place(*loading)
                 }
             }
-            Effect::Shift { loading, channel: of, .. } => {
+            Effect::Shift { loading, channel: own, .. } => {
                 // the last row before in which the channel was read
-                let was_read = |row: &usize| protocol.channels.get(*row).is_some_and(|read| read[*of]);
+                let was_read = |row: &usize| protocol.channels.get(*row).is_some_and(|read| read[*own]);
                 let last = (0..*loading).rev().find(was_read).unwrap_or(0);
-                Place { after_row: Some(last + 1), channel: channel(*of), ..protocol.run_place(last) }
+                Place { after_row: Some(last + 1), channel: channel(*own), ..protocol.run_place(last) }
             }
             Effect::Outlier(cells) => match cells.as_slice() {
                 [(cell, _)] => protocol.cell_place(*cell),
@@ -233,8 +230,8 @@ impl Effect {
                 vec![("share", *amplitude), ("period_mm", period / MM)]
             }
             Effect::Damping { share, time } => vec![("share", *share), ("time_s", *time)],
-            Effect::SlippingClamp { per_newton, yields, .. } => {
-                vec![("um_per_n", per_newton / UM), ("yield_n", *yields)]
+            Effect::SlippingClamp { per_newton, yield_load, .. } => {
+                vec![("um_per_n", per_newton / UM), ("yield_n", *yield_load)]
             }
         }
     }

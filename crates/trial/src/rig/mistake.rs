@@ -8,6 +8,7 @@ use super::drawing::{Drawing, rounded};
 use super::protocol::{AXES, Cell};
 use super::written::{self, Written};
 use crate::chance::{happens, one_of};
+use crate::effect_name::EffectName;
 use crate::place::Place;
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{STANDARD_GRAVITY, UM};
@@ -119,27 +120,27 @@ pub(super) fn of_kind(
 }
 
 /// Two of these, in their order.
-pub(super) fn pair(of: &[usize], random: &mut Random) -> Option<[usize; 2]> {
-    let first = random.index(of.len());
-    let second = (first + 1 + random.index(of.len().checked_sub(1)?)) % of.len();
-    let (a, b) = (*of.get(first)?, *of.get(second)?);
+pub(super) fn pair(choices: &[usize], random: &mut Random) -> Option<[usize; 2]> {
+    let first = random.index(choices.len());
+    let second = (first + 1 + random.index(choices.len().checked_sub(1)?)) % choices.len();
+    let (a, b) = (*choices.get(first)?, *choices.get(second)?);
     (a != b).then_some([a.min(b), a.max(b)])
 }
 
 impl Mistake {
     /// Its name.
-    pub fn name(&self) -> &'static str {
+    pub fn name(&self) -> EffectName {
         match self {
-            Mistake::Loads { .. } | Mistake::Readings { .. } | Mistake::Radii => "unit_mistake",
-            Mistake::Flip(_) => "sign_mistake",
-            Mistake::Channels(_) | Mistake::Axes(_) | Mistake::Legs => "swap_mistake",
-            Mistake::Stuck { .. } => "stuck_sensor",
-            Mistake::Saturated { .. } => "saturated_sensor",
-            Mistake::Zero { .. } => "offset_mistake",
-            Mistake::Rod { .. } => "rod_mistake",
+            Mistake::Loads { .. } | Mistake::Readings { .. } | Mistake::Radii => EffectName::UnitMistake,
+            Mistake::Flip(_) => EffectName::SignMistake,
+            Mistake::Channels(_) | Mistake::Axes(_) | Mistake::Legs => EffectName::SwapMistake,
+            Mistake::Stuck { .. } => EffectName::StuckSensor,
+            Mistake::Saturated { .. } => EffectName::SaturatedSensor,
+            Mistake::Zero { .. } => EffectName::OffsetMistake,
+            Mistake::Rod { .. } => EffectName::RodMistake,
             Mistake::InTrials { what, .. } => what.name(),
-            Mistake::Typed { .. } => "typing_mistake",
-            Mistake::Copied { .. } => "copy_mistake",
+            Mistake::Typed { .. } => EffectName::TypingMistake,
+            Mistake::Copied { .. } => EffectName::CopyMistake,
         }
     }
 
@@ -161,7 +162,7 @@ impl Mistake {
             Mistake::Radii => format!("{}, {}", pipe("pipe1"), pipe("pipe2")),
             Mistake::Rod { file, .. } => file.clone(),
             Mistake::InTrials { trials, what } => {
-                let whole = what.place(written).key.unwrap_or_default();
+                let whole = what.place(written).key.map(String::from).unwrap_or_default();
                 written::in_trials(&whole, trials, &written.protocol)
             }
             Mistake::Typed { loading, .. } => {
@@ -187,11 +188,11 @@ impl Mistake {
     }
 
     /// What is written with it.
-    pub fn made(&self, written: &Written) -> Written {
+    pub fn applied_to(&self, written: &Written) -> Written {
         let mut wrong = written.clone();
         let cells = written.protocol.cells();
-        let change = |shown: &mut Vec<f64>, of: &dyn Fn(&Cell, f64) -> f64| {
-            cells.iter().zip(shown).for_each(|(cell, value)| *value = of(cell, *value));
+        let change = |shown: &mut Vec<f64>, wrong: &dyn Fn(&Cell, f64) -> f64| {
+            cells.iter().zip(shown).for_each(|(cell, value)| *value = wrong(cell, *value));
         };
         match self {
             Mistake::Loads { factor } => {
@@ -245,7 +246,7 @@ impl Mistake {
             }
             Mistake::InTrials { trials, what } => {
                 let is_of = |k: usize| trials.contains(&written.protocol.loadings[k].trial);
-                wrong = written::merged(written, &what.made(written), is_of);
+                wrong = written::merged(written, &what.applied_to(written), is_of);
             }
             Mistake::Typed { loading, load, .. } => wrong.protocol.loadings[*loading].load = *load,
             Mistake::Copied { from, to } => wrong = written::copy(written, *from, *to),
@@ -255,7 +256,7 @@ impl Mistake {
 
     /// True where the files do not fit each other: the readings of the rod of the file are far off.
     pub(super) fn shows(&self, written: &Written) -> bool {
-        let wrong = self.made(written);
+        let wrong = self.applied_to(written);
         let tip = wrong.drawing.length();
         let cells = written.protocol.cells();
         if let Mistake::Saturated { channel, .. }
@@ -292,8 +293,8 @@ impl Mistake {
             sticking,
             full_scale,
         };
-        let norm = |values: &dyn Fn(f64, f64) -> f64, of: &[(f64, f64)]| {
-            of.iter().map(|&(a, b)| values(a, b).powi(2)).sum::<f64>().sqrt()
+        let norm = |values: &dyn Fn(f64, f64) -> f64, pairs: &[(f64, f64)]| {
+            pairs.iter().map(|&(a, b)| values(a, b).powi(2)).sum::<f64>().sqrt()
         };
         // in some trials it must show in these
         let is_wrong = |cell: &Cell| match self {
@@ -325,13 +326,13 @@ mod tests {
     fn exchanged_columns_and_axes_keep_every_number() {
         let mut written = written();
         for mistake in [Mistake::Channels([0, 2]), Mistake::Axes([1, 2])] {
-            let twice = mistake.made(&mistake.made(&written));
+            let twice = mistake.applied_to(&mistake.applied_to(&written));
             assert_eq!(twice, written, "{mistake:?}");
         }
         // the first row of dx holds what dz read, also where a channel is blank
         written.protocol.channels[0] = [true, true, false];
         written.shown.remove(2);
-        let wrong = Mistake::Channels([0, 2]).made(&written);
+        let wrong = Mistake::Channels([0, 2]).applied_to(&written);
         assert_eq!(wrong.protocol.channels[0], [false, true, true]);
         assert_eq!(wrong.shown[..2], [written.shown[1], written.shown[0]]);
         assert_eq!(wrong.shown.len(), written.shown.len());

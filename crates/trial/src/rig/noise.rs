@@ -82,7 +82,7 @@ impl Noise {
     }
 
     /// For people: `student-t (5), correlated 0.4`.
-    pub fn words(&self) -> String {
+    pub fn description(&self) -> String {
         let shape = match &self.shape {
             Shape::Normal => "normal".into(),
             Shape::StudentT(dof) => format!("student-t ({dof})"),

@@ -21,8 +21,9 @@ use super::covariance::{Covariance, nominal};
 use super::draw;
 use super::effect::Effect;
 use super::noise::Noise;
+use crate::effect_name::EffectName;
+use crate::ground_truth::Detectability;
 use crate::place::Place;
-use crate::truth::Detectability;
 use rodcal_base::units::MM;
 
 /// Effects of other names closer than this cannot be distinguished; places of one effect closer
@@ -42,7 +43,7 @@ const PAIRED: [usize; 2] = [4, 80];
 
 /// An effect that might be in the place of another one.
 struct Rival {
-    name: &'static str,
+    name: EffectName,
     place: Place,
     station: Option<f64>,
     /// Whitened.
@@ -105,15 +106,15 @@ impl Oracle {
         let effect = &effects[which];
         let parameters = effect.parameters().len() as f64;
         let separation = |columns: &[DVector<f64>], is_one_sided: bool| {
-            let square = remainder(&delta, &given, columns, is_one_sided);
+            let square = squared_distance(&delta, &given, columns, is_one_sided);
             0.5 * square - 0.5 * parameters * square.ln_1p()
         };
-        let mut best: BTreeMap<&str, f64> = BTreeMap::new();
+        let mut best: BTreeMap<&EffectName, f64> = BTreeMap::new();
         let (mut places, mut stations) = (vec![effect.place(&self.bench.protocol)], Vec::new());
         for rival in &self.rivals {
             let apart = separation(&rival.columns, rival.is_one_sided);
             if rival.name != effect.name() {
-                let least = best.entry(rival.name).or_insert(f64::INFINITY);
+                let least = best.entry(&rival.name).or_insert(f64::INFINITY);
                 *least = least.min(apart);
             } else if apart < SAME_PLACE {
                 places.push(rival.place.clone());
@@ -128,11 +129,11 @@ impl Oracle {
             against_none: separation(&[], false),
             against_rival: nearest.map_or(f64::MAX, |(_, apart)| *apart),
             against_pair: None,
-            best_rival: nearest.map_or_else(String::new, |(name, _)| (*name).to_owned()),
+            best_rival: nearest.map_or_else(String::new, |(name, _)| name.to_string()),
             class: best
                 .iter()
                 .filter(|(_, apart)| **apart < SAME_EFFECT)
-                .map(|(n, _)| (*n).to_owned())
+                .map(|(name, _)| (*name).clone())
                 .collect(),
             places,
             stations_mm: (!stations.is_empty()).then(|| {
@@ -150,7 +151,7 @@ impl Oracle {
             (0..without.len()).map(|k| self.added(&without, &others(&without, k))).collect();
         let half = 0.5 * effects[which].parameters().len() as f64;
         let separation = |columns: &[DVector<f64>], is_one_sided: bool| {
-            let square = remainder(&delta, &given, columns, is_one_sided);
+            let square = squared_distance(&delta, &given, columns, is_one_sided);
             0.5 * square - half * square.ln_1p()
         };
         let mut alone: Vec<(f64, &Rival)> =
@@ -208,8 +209,9 @@ impl Oracle {
         let right = DVector::from_fn(n, |i, _| columns[i].dot(&error) - sizes[i]);
         let off = normal.cholesky()?.solve(&right);
         let exact = DVector::from_vec(asked.readings(effects));
-        let said = there.iter().zip(off.iter()).fold(exact, |said, (column, off)| said + column * *off);
-        Some(said.iter().copied().collect())
+        let predicted =
+            there.iter().zip(off.iter()).fold(exact, |predicted, (column, off)| predicted + column * *off);
+        Some(predicted.iter().copied().collect())
     }
 
     /// Whitened difference of the readings with some effects and with others.
@@ -292,7 +294,7 @@ fn others(effects: &[Effect], which: usize) -> Vec<Effect> {
 
 /// min over α, β of |δ − Gα − Cβ|² + |α|² + |β|², with β ≥ 0 where it is one-sided: all subsets of
 /// its few columns are tried. α counts a change of the other effects' size by themselves.
-fn remainder(
+fn squared_distance(
     delta: &DVector<f64>,
     given: &[DVector<f64>],
     columns: &[DVector<f64>],
@@ -320,14 +322,14 @@ mod tests {
     use crate::rig::bench::tests::bench;
 
     #[test]
-    fn a_remainder_is_a_ridge_regression_that_may_be_one_sided() {
+    fn a_distance_is_a_ridge_regression_that_may_be_one_sided() {
         let delta = DVector::from_vec(vec![3.0, 4.0]);
         let column = vec![DVector::from_vec(vec![1.0, 0.0])];
         // β = 3/2: 1.5² + 16 + 1.5²
-        assert!((remainder(&delta, &[], &column, true) - 20.5).abs() < 1e-12);
+        assert!((squared_distance(&delta, &[], &column, true) - 20.5).abs() < 1e-12);
         let against = vec![DVector::from_vec(vec![-1.0, 0.0])];
-        assert_eq!(remainder(&delta, &[], &against, true), 25.0);
-        assert!((remainder(&delta, &[], &against, false) - 20.5).abs() < 1e-12);
+        assert_eq!(squared_distance(&delta, &[], &against, true), 25.0);
+        assert!((squared_distance(&delta, &[], &against, false) - 20.5).abs() < 1e-12);
     }
 
     #[test]

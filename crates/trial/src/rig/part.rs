@@ -124,7 +124,7 @@ fn copied(written: &Written, random: &mut Random) -> Option<Mistake> {
     if !protocol.columns.trial {
         return None;
     }
-    let copy = mistake.made(written);
+    let copy = mistake.applied_to(written);
     let of_trial = |cell: &super::protocol::Cell| protocol.loadings[cell.loading].trial == to;
     let pairs = protocol.cells().into_iter().zip(written.shown.iter().zip(&copy.shown));
     let own: Vec<bool> = pairs.filter(|(cell, _)| of_trial(cell)).map(|(_, (a, b))| a != b).collect();
@@ -172,10 +172,10 @@ mod tests {
                     assert!(number > 2, "{number}");
                     continue;
                 };
-                let wrong = mistake.made(&written);
+                let wrong = mistake.applied_to(&written);
                 let same = |k: usize| {
-                    let row = |of: &Written| {
-                        let cells = of.protocol.cells().into_iter().zip(&of.shown);
+                    let row = |written: &Written| {
+                        let cells = written.protocol.cells().into_iter().zip(&written.shown);
                         let own = cells.filter(|(cell, _)| cell.loading == k);
                         own.map(|(cell, shown)| (cell.channel, shown.to_bits())).collect::<Vec<_>>()
                     };
@@ -203,12 +203,12 @@ mod tests {
     fn a_copy_is_the_other_trial_to_the_last_digit() {
         let written = written();
         let copy = super::super::written::copy(&written, 0, 2);
-        let of = |trial: usize| -> Vec<f64> {
+        let readings = |trial: usize| -> Vec<f64> {
             let cells = copy.protocol.cells().into_iter().zip(&copy.shown);
             let own = cells.filter(|(cell, _)| copy.protocol.loadings[cell.loading].trial == trial);
             own.map(|(_, shown)| *shown).collect()
         };
-        assert!(of(2) == of(0) && of(1) != of(0));
+        assert!(readings(2) == readings(0) && readings(1) != readings(0));
     }
 
     #[test]
@@ -222,14 +222,14 @@ mod tests {
         for number in 0..MISTAKES {
             for seed in 0..8 {
                 let mistake = draw(number, &written, other, &mut Random::seeded(seed, number as u64));
-                assert!(mistake.shows(&written) && mistake.made(&written) != written, "{mistake:?}");
+                assert!(mistake.shows(&written) && mistake.applied_to(&written) != written, "{mistake:?}");
                 assert!(!mistake.place(&written).is_nowhere());
                 names.insert(mistake.name());
             }
         }
         assert!(names.len() >= 7, "{names:?}");
         // undone by its factor
-        let wrong = Mistake::Loads { factor: STANDARD_GRAVITY }.made(&written);
+        let wrong = Mistake::Loads { factor: STANDARD_GRAVITY }.applied_to(&written);
         let ratio = written.protocol.loadings[0].load / wrong.protocol.loadings[0].load;
         assert!((ratio - STANDARD_GRAVITY).abs() < 1e-12);
         // legs of one length may be exchanged

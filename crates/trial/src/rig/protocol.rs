@@ -35,6 +35,13 @@ pub struct Loading {
     pub stations: [f64; 2],
 }
 
+impl Loading {
+    /// True of a loading along this axis; `None` is any.
+    pub fn is_along(&self, axis: Option<usize>) -> bool {
+        axis.is_none_or(|axis| axis == self.axis)
+    }
+}
+
 /// One load of a run, N, and whether it hangs on the way down.
 pub type Step = (f64, bool);
 
@@ -156,13 +163,13 @@ impl Protocol {
     /// The run of a loading: its axis and its trial, its number where trials have no name, or
     /// nothing more where there is only one.
     pub fn run_place(&self, loading: usize) -> Place {
-        let Some(of) = self.loadings.get(loading) else { return Place::default() };
-        let is_only = self.loadings.iter().all(|l| l.axis != of.axis || l.run == of.run);
-        let place = Place::default().loads_along(AXES[of.axis]);
+        let Some(own) = self.loadings.get(loading) else { return Place::default() };
+        let is_only = self.loadings.iter().all(|l| l.axis != own.axis || l.run == own.run);
+        let place = Place::default().loads_along(AXES[own.axis]);
         match (self.columns.trial, is_only) {
-            (true, _) => Place { trial: Some((of.trial + 1).to_string()), ..place },
+            (true, _) => Place { trial: Some((own.trial + 1).to_string()), ..place },
             (false, true) => place,
-            (false, false) => Place { run: Some(of.trial + 1), ..place },
+            (false, false) => Place { run: Some(own.trial + 1), ..place },
         }
     }
 

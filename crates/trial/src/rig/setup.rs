@@ -133,7 +133,7 @@ fn stated(tubes: &[Tube; 2], random: &mut Random) -> Option<Uncertainty> {
     }
     // one table for all materials: that of the less well known
     let vague = tubes.each_ref().map(Uncertainty::default_of);
-    let most = |of: fn(&Uncertainty) -> f64| of(&vague[0]).max(of(&vague[1]));
+    let most = |number: fn(&Uncertainty) -> f64| number(&vague[0]).max(number(&vague[1]));
     let share = random.uniform(0.3, 1.0);
     Some(Uncertainty {
         youngs_modulus: rounded(share * most(|u| u.youngs_modulus), 4),

@@ -169,7 +169,7 @@ mod tests {
             let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
             let off: Vec<f64> = half.iter().zip(&whole).map(|(half, whole)| half - 0.5 * whole).collect();
             // a slide turns round within its presliding: more than half
-            let within = if effect.name() == "friction" { 0.2 } else { 0.05 };
+            let within = if matches!(effect, Effect::Friction { .. }) { 0.2 } else { 0.05 };
             assert!(norm(&off) <= within * norm(&whole), "{effect:?} {} {}", norm(&off), norm(&whole));
         }
     }

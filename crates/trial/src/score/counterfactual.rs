@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use serde::Serialize;
 
 use crate::answers::Answer;
-use crate::truth::Truth;
+use crate::ground_truth::GroundTruth;
 use rodcal_base::spatial::best_motion;
 
 /// Errors of the readings that were asked for, root mean squares, µm.
@@ -20,17 +20,18 @@ pub struct Counterfactual {
 
 impl Counterfactual {
     /// Of a case with an oracle; `None` where nothing was predicted, or not each reading.
-    pub fn new(truth: &Truth, answer: &Answer) -> Option<Self> {
-        let asked = truth.asked.as_ref()?;
-        let error = |said: &[f64]| -> Option<f64> {
-            let is_whole = !said.is_empty() && said.len() == asked.true_um.len();
-            let said = if asked.is_any_frame { moved_onto(said, &asked.true_um)? } else { said.to_vec() };
-            let squares = said.iter().zip(&asked.true_um).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-            is_whole.then(|| (squares / said.len() as f64).sqrt()).filter(|error| error.is_finite())
+    pub fn new(truth: &GroundTruth, answer: &Answer) -> Option<Self> {
+        let query = truth.query.as_ref()?;
+        let error = |predicted: &[f64]| -> Option<f64> {
+            let is_whole = !predicted.is_empty() && predicted.len() == query.true_um.len();
+            let predicted =
+                if query.is_any_frame { moved_onto(predicted, &query.true_um)? } else { predicted.to_vec() };
+            let squares = predicted.iter().zip(&query.true_um).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+            is_whole.then(|| (squares / predicted.len() as f64).sqrt()).filter(|error| error.is_finite())
         };
         Some(Counterfactual {
-            answer_um: error(answer.asked_um.as_ref()?)?,
-            oracle_um: error(asked.oracle_um.as_ref()?)?,
+            answer_um: error(answer.predicted_um.as_ref()?)?,
+            oracle_um: error(query.oracle_um.as_ref()?)?,
             noise_um: truth.noise_um,
         })
     }
@@ -42,8 +43,8 @@ impl Counterfactual {
 }
 
 /// Coordinates of points after the motion that brings them closest to others.
-fn moved_onto(said: &[f64], goal: &[f64]) -> Option<Vec<f64>> {
-    let [points, goal] = [said, goal]
+fn moved_onto(predicted: &[f64], goal: &[f64]) -> Option<Vec<f64>> {
+    let [points, goal] = [predicted, goal]
         .map(|all| -> Vec<Vector3<f64>> { all.chunks_exact(3).map(Vector3::from_column_slice).collect() });
     let motion = best_motion(&points, &goal).ok()?;
     Some(points.iter().flat_map(|point| <[f64; 3]>::from(motion.point(point))).collect())

@@ -8,13 +8,14 @@ use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 use super::{
-    Bin, Confusion, Failure, Missed, NextMeasurement, PowerBin, Predictions, Rate, Reached,
+    Bin, Conflicts, Confusion, Failure, Missed, NextMeasurement, PowerBin, Predictions, Rate, Reached,
     tables::confusion_text,
 };
-use crate::envelope::unwritable;
+use crate::archive::unwritable;
+use crate::effect_name::EffectName;
 
-/// A trial's score: of all cases, and of each half of them. As JSON its keys are those of [`Part`],
-/// then the halves.
+/// A trial's score: of all cases, and of each suite of them. As JSON its keys are those of
+/// [`Part`], then the suites.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Score {
     /// All cases.
@@ -77,11 +78,11 @@ pub struct Part {
     pub confusion: Confusion,
     /// Effects that imitate each other: pair → truth → answer → cases.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub conflicts: BTreeMap<String, Confusion>,
+    pub conflicts: Conflicts,
     /// Names of effects that no library has.
-    pub outside: BTreeSet<String>,
+    pub outside: BTreeSet<EffectName>,
     /// Probability of the right name over size, by effect.
-    pub power: BTreeMap<String, Vec<PowerBin>>,
+    pub power: BTreeMap<EffectName, Vec<PowerBin>>,
     /// Cases that somebody should look at.
     pub failures: Vec<Failure>,
     /// What was to be reached, missed targets first.
@@ -167,7 +168,7 @@ pub struct Mistakes {
     /// A mistake was named in a case without one.
     pub invented: Rate,
     /// Those that were named, by the mistake.
-    pub by_mistake: BTreeMap<String, Rate>,
+    pub by_mistake: BTreeMap<EffectName, Rate>,
 }
 
 /// Of cases with misread readings.
@@ -192,7 +193,7 @@ impl Serialize for Clean {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let Clean { false_names, false_unexplained, silent, silent_twice } = self;
         json!({
-            "n": false_names.of,
+            "n": false_names.total,
             "false_names": false_names.count, "false_unexplained": false_unexplained.count,
             "false_names_rate": false_names, "false_unexplained_rate": false_unexplained,
             "silent_rate": silent, "silent_twice_rate": silent_twice,
@@ -205,7 +206,7 @@ impl Serialize for Singles {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let Singles { n, name_ok, location_ok, missed, in_class, class_size } = self;
         json!({
-            "n": n, "identifiable": name_ok.of,
+            "n": n, "identifiable": name_ok.total,
             "name_ok": name_ok.count, "location_ok": location_ok.count, "in_class": in_class.count,
             "missed": missed.count, "class_size": class_size,
             "name_ok_rate": name_ok, "location_ok_rate": location_ok, "in_class_rate": in_class,
@@ -218,7 +219,7 @@ impl Serialize for Pairs {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let Pairs { n, both_found, one_found } = self;
         json!({
-            "n": n, "identifiable": both_found.of,
+            "n": n, "identifiable": both_found.total,
             "both_found": both_found.count, "one_found": one_found.count, "both_found_rate": both_found,
         })
         .serialize(serializer)
@@ -229,7 +230,7 @@ impl Serialize for Unknown {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let Unknown { n, called_unknown, wrongly_named } = self;
         json!({
-            "n": n, "identifiable": called_unknown.of,
+            "n": n, "identifiable": called_unknown.total,
             "called_unknown": called_unknown.count, "wrongly_named": wrongly_named.count,
             "called_unknown_rate": called_unknown, "wrongly_named_rate": wrongly_named,
         })
@@ -247,8 +248,8 @@ impl Serialize for Coverage {
 }
 
 impl Score {
-    /// The halves that have cases, by name.
-    pub fn halves(&self) -> impl Iterator<Item = (&'static str, &Part)> {
+    /// The suites that have cases, by name.
+    pub fn suites(&self) -> impl Iterator<Item = (&'static str, &Part)> {
         [("rig", &self.rig), ("calibration", &self.calibration)]
             .into_iter()
             .filter_map(|(name, part)| Some((name, part.as_ref()?)))
@@ -262,18 +263,18 @@ impl Score {
         serde_json::to_value(self).map_err(unwritable)
     }
 
-    /// For people: missed targets, all cases, then each half if there are both.
+    /// For people: missed targets, all cases, then each suite if there are both.
     pub fn text(&self) -> String {
         let mut text: String = self.remarks.iter().map(|remark| format!("{remark}\n")).collect();
-        for (half, part) in self.halves() {
-            part.missed_targets.iter().for_each(|missed| text += &format!("MISSED {half}: {missed}\n"));
+        for (suite, part) in self.suites() {
+            part.missed_targets.iter().for_each(|missed| text += &format!("MISSED {suite}: {missed}\n"));
         }
         if !text.is_empty() {
             text += "\n";
         }
         text += &self.whole.text();
-        if self.halves().count() > 1 {
-            self.halves().for_each(|(half, part)| text += &format!("\n{half}\n{}", part.text()));
+        if self.suites().count() > 1 {
+            self.suites().for_each(|(suite, part)| text += &format!("\n{suite}\n{}", part.text()));
         }
         text
     }
@@ -284,43 +285,43 @@ impl Part {
         let Part { clean, single, pairs, unknown, below, mistakes, suspects, .. } = self;
         let mut text: String = self.targets.iter().map(|reached| format!("{reached}\n")).collect();
         text += "\n";
-        let mut say = |what: &str, words: &dyn Display| text += &format!("{what:44} {words}\n");
-        say("clean: silent", &clean.silent);
-        say("clean, numbers twice as far off: silent", &clean.silent_twice);
-        say("clean: false names", &clean.false_names);
-        say("clean: called unexplained", &clean.false_unexplained);
-        say("single, identifiable: name right", &single.name_ok);
-        say("single, identifiable: name and place right", &single.location_ok);
-        say("single, identifiable: nothing named", &single.missed);
-        say(
+        let mut line = |what: &str, value: &dyn Display| text += &format!("{what:44} {value}\n");
+        line("clean: silent", &clean.silent);
+        line("clean, numbers twice as far off: silent", &clean.silent_twice);
+        line("clean: false names", &clean.false_names);
+        line("clean: called unexplained", &clean.false_unexplained);
+        line("single, identifiable: name right", &single.name_ok);
+        line("single, identifiable: name and place right", &single.location_ok);
+        line("single, identifiable: nothing named", &single.missed);
+        line(
             "single, detectable, named: truth in class",
             &format!("{}; class of {:.1}", single.in_class, single.class_size),
         );
-        say("single, below the limit: silent", &below.silent);
-        say("single, below the limit: silent or right", &below.silent_or_right);
-        say("single, below the limit: wrongly named", &below.wrongly_named);
-        say("pairs, identifiable: both found", &pairs.both_found);
-        say("pairs, identifiable: one found", &pairs.one_found);
-        say("unknown, identifiable: called unexplained", &unknown.called_unknown);
-        say("unknown, identifiable: wrongly named", &unknown.wrongly_named);
-        say("mistakes: named", &mistakes.named);
-        say("mistakes: named and placed", &mistakes.placed);
-        say("mistakes: named as something else", &mistakes.as_other);
-        say("mistakes: silent", &mistakes.silent);
-        say("no mistake: a mistake named", &mistakes.invented);
+        line("single, below the limit: silent", &below.silent);
+        line("single, below the limit: silent or right", &below.silent_or_right);
+        line("single, below the limit: wrongly named", &below.wrongly_named);
+        line("pairs, identifiable: both found", &pairs.both_found);
+        line("pairs, identifiable: one found", &pairs.one_found);
+        line("unknown, identifiable: called unexplained", &unknown.called_unknown);
+        line("unknown, identifiable: wrongly named", &unknown.wrongly_named);
+        line("mistakes: named", &mistakes.named);
+        line("mistakes: named and placed", &mistakes.placed);
+        line("mistakes: named as something else", &mistakes.as_other);
+        line("mistakes: silent", &mistakes.silent);
+        line("no mistake: a mistake named", &mistakes.invented);
         for (mistake, rate) in &mistakes.by_mistake {
-            say(&format!("  {mistake}: named"), rate);
+            line(&format!("  {mistake}: named"), rate);
         }
-        say("misread readings: all remarked", &suspects.remarked);
-        say("misread readings: something named", &suspects.named);
-        say("right when it names", &self.right_when_named);
-        say("right, or not distinguishable, when it names", &self.right_or_inseparable);
-        say("right, or in its class, when it names", &self.class_right_when_named);
-        say("95 % intervals that hold the truth", &self.coverage.all);
+        line("misread readings: all remarked", &suspects.remarked);
+        line("misread readings: something named", &suspects.named);
+        line("right when it names", &self.right_when_named);
+        line("right, or not distinguishable, when it names", &self.right_or_inseparable);
+        line("right, or in its class, when it names", &self.class_right_when_named);
+        line("95 % intervals that hold the truth", &self.coverage.all);
         let gain = self.gain_over_oracle.map_or("no case".into(), |gain| format!("{gain:.3}"));
-        say("held-out gain over the oracle's", &gain);
-        say("error of other readings over the oracle's", &self.counterfactual);
-        say("ambiguous: settled by what is proposed", &self.next_measurement_ok);
+        line("held-out gain over the oracle's", &gain);
+        line("error of other readings over the oracle's", &self.counterfactual);
+        line("ambiguous: settled by what is proposed", &self.next_measurement_ok);
         text += &confusion_text("truth (identifiable)", &self.confusion);
         self.conflicts.iter().for_each(|(pair, counts)| text += &confusion_text(pair, counts));
         text

@@ -5,8 +5,8 @@ use std::fmt;
 use serde::Serialize;
 
 use super::counterfactual::Counterfactual;
-use super::judged::Judged;
-use crate::truth::Kind;
+use super::scored_case::ScoredCase;
+use crate::ground_truth::Kind;
 
 /// Worst cases that are listed.
 const MOST_WORST: usize = 10;
@@ -43,20 +43,20 @@ pub struct Worst {
 }
 
 /// How well identifiable cases with an oracle are predicted.
-pub fn predictions(cases: &[Judged<'_>]) -> Predictions {
-    let is_asked = |case: &&Judged<'_>| {
-        let has_oracle = case.truth.asked.as_ref().is_some_and(|asked| asked.oracle_um.is_some());
+pub fn predictions(cases: &[ScoredCase<'_>]) -> Predictions {
+    let is_asked = |case: &&ScoredCase<'_>| {
+        let has_oracle = case.truth.query.as_ref().is_some_and(|asked| asked.oracle_um.is_some());
         let is_identifiable = case.truth.effects.iter().all(|e| e.detectability.is_identifiable());
         has_oracle && is_identifiable && matches!(case.truth.kind, Kind::Single | Kind::Pair)
     };
-    let asked: Vec<&Judged<'_>> = cases.iter().filter(is_asked).collect();
-    let mut predicted: Vec<(f64, Counterfactual, &Judged<'_>)> = asked
+    let asked: Vec<&ScoredCase<'_>> = cases.iter().filter(is_asked).collect();
+    let mut predicted: Vec<(f64, Counterfactual, &ScoredCase<'_>)> = asked
         .iter()
         .filter_map(|case| Some((case.counterfactual?.ratio()?, case.counterfactual?, *case)))
         .collect();
     predicted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let sorted = |of: &dyn Fn(&Counterfactual) -> f64| -> Vec<f64> {
-        let mut all: Vec<f64> = predicted.iter().map(|(_, errors, _)| of(errors)).collect();
+    let sorted = |ratio: &dyn Fn(&Counterfactual) -> f64| -> Vec<f64> {
+        let mut all: Vec<f64> = predicted.iter().map(|(_, errors, _)| ratio(errors)).collect();
         all.sort_by(f64::total_cmp);
         all
     };

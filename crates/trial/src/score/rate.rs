@@ -14,13 +14,13 @@ pub struct Rate {
     /// How many.
     pub count: usize,
     /// Of how many.
-    pub of: usize,
+    pub total: usize,
 }
 
 impl Rate {
     /// Counts one more case.
     pub fn add(&mut self, is_so: bool) {
-        self.of += 1;
+        self.total += 1;
         self.count += usize::from(is_so);
     }
 
@@ -33,12 +33,12 @@ impl Rate {
 
     /// The share; `None` of nothing.
     pub fn share(&self) -> Option<f64> {
-        (self.of > 0).then(|| self.count as f64 / self.of as f64)
+        (self.total > 0).then(|| self.count as f64 / self.total as f64)
     }
 
     /// Its 95 % interval (E. B. Wilson, *JASA* 22 (1927) 209).
     pub fn interval(&self) -> Option<[f64; 2]> {
-        let (p, n) = (self.share()?, self.of as f64);
+        let (p, n) = (self.share()?, self.total as f64);
         let centre = p + Z * Z / (2.0 * n);
         let half = Z * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
         let scale = 1.0 + Z * Z / n;
@@ -50,7 +50,7 @@ impl Rate {
 impl Serialize for Rate {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let [lo, hi] = self.interval().map_or([None; 2], |[lo, hi]| [Some(lo), Some(hi)]);
-        json!({"count": self.count, "of": self.of, "share": self.share(), "lo": lo, "hi": hi})
+        json!({"count": self.count, "of": self.total, "share": self.share(), "lo": lo, "hi": hi})
             .serialize(serializer)
     }
 }
@@ -62,7 +62,7 @@ impl fmt::Display for Rate {
             return f.write_str("no case");
         };
         let [share, lo, hi] = [share, lo, hi].map(|part| 100.0 * part);
-        write!(f, "{} of {}, {share:.1} % ({lo:.1} to {hi:.1})", self.count, self.of)
+        write!(f, "{} of {}, {share:.1} % ({lo:.1} to {hi:.1})", self.count, self.total)
     }
 }
 
@@ -73,9 +73,9 @@ mod tests {
     #[test]
     fn the_interval_is_wilsons() {
         // R. G. Newcombe, Statistics in Medicine 17 (1998) 857, Table I: 15 of 148
-        let [lo, hi] = Rate { count: 15, of: 148 }.interval().unwrap();
+        let [lo, hi] = Rate { count: 15, total: 148 }.interval().unwrap();
         assert!((lo - 0.0624).abs() < 5e-5 && (hi - 0.1605).abs() < 5e-5, "{lo} {hi}");
         assert_eq!(Rate::default().interval(), None);
-        assert_eq!(Rate { count: 0, of: 20 }.interval().unwrap()[0], 0.0);
+        assert_eq!(Rate { count: 0, total: 20 }.interval().unwrap()[0], 0.0);
     }
 }

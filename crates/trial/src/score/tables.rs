@@ -1,12 +1,16 @@
 //! Tables of a score: by detectability, by size, truth against answer, and what went wrong.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Display;
 
 use serde::Serialize;
 
-use super::judged::{Finding, Judged};
+use super::diagnosis::Finding;
 use super::rate::Rate;
-use crate::truth::Kind;
+use super::scored_case::ScoredCase;
+use super::verdict::Verdict;
+use crate::effect_name::EffectName;
+use crate::ground_truth::Kind;
 
 /// Edges of the bins of detectability, expected log Bayes factor.
 const DETECTABILITY: [f64; 7] = [0.5, 2.0, 5.0, 10.0, 30.0, 100.0, 1000.0];
@@ -43,7 +47,7 @@ pub struct Bin {
 }
 
 /// Singles by what the oracle could know.
-pub fn bins(cases: &[Judged<'_>]) -> Vec<Bin> {
+pub fn bins(cases: &[ScoredCase<'_>]) -> Vec<Bin> {
     let mut rates = vec![[Rate::default(); 4]; DETECTABILITY.len() + 1];
     for case in cases.iter().filter(|case| case.truth.kind == Kind::Single) {
         let Some(concealed) = case.truth.effects.first() else { continue };
@@ -59,7 +63,7 @@ pub fn bins(cases: &[Judged<'_>]) -> Vec<Bin> {
         Bin {
             from,
             to,
-            n: name.of,
+            n: name.total,
             name_ok: name.count,
             location_ok: place.count,
             location_ok_rate: *place,
@@ -86,76 +90,81 @@ pub struct PowerBin {
 }
 
 /// Probability of the right name against size over noise, for each effect.
-pub fn power(cases: &[Judged<'_>]) -> BTreeMap<String, Vec<PowerBin>> {
-    let mut rates: BTreeMap<&str, Vec<Rate>> = BTreeMap::new();
+pub fn power(cases: &[ScoredCase<'_>]) -> BTreeMap<EffectName, Vec<PowerBin>> {
+    let mut rates: BTreeMap<&EffectName, Vec<Rate>> = BTreeMap::new();
     for case in cases.iter().filter(|case| case.truth.kind == Kind::Single) {
         let Some(concealed) = case.truth.effects.first() else { continue };
-        let of = rates.entry(&concealed.effect).or_insert_with(|| vec![Rate::default(); SIZE.len() + 1]);
-        of[bin(&SIZE, concealed.size_over_noise)].add(case.name_ok());
+        let own = rates.entry(&concealed.effect).or_insert_with(|| vec![Rate::default(); SIZE.len() + 1]);
+        own[bin(&SIZE, concealed.size_over_noise)].add(case.name_ok());
     }
-    let of_effect = |(effect, rates): (&str, Vec<Rate>)| {
+    let of_effect = |(effect, rates): (&EffectName, Vec<Rate>)| {
         let of_bin = |(k, rate): (usize, &Rate)| {
             let [from, to] = limits(&SIZE, k);
-            PowerBin { from, to, n: rate.of, name_ok: rate.count, name_ok_rate: *rate }
+            PowerBin { from, to, n: rate.total, name_ok: rate.count, name_ok_rate: *rate }
         };
-        let bins = rates.iter().enumerate().filter(|(_, rate)| rate.of > 0);
-        (effect.to_owned(), bins.map(of_bin).collect())
+        let bins = rates.iter().enumerate().filter(|(_, rate)| rate.total > 0);
+        (effect.clone(), bins.map(of_bin).collect())
     };
     rates.into_iter().map(of_effect).collect()
 }
 
 /// Truth → answer → number of cases: clean ones, and identifiable ones with a single effect, an
 /// unknown one or a mistake.
-pub type Confusion = BTreeMap<String, BTreeMap<String, usize>>;
+pub type Confusion = BTreeMap<Verdict, BTreeMap<Verdict, usize>>;
 
 /// For each truth how often which answer came.
-pub fn confusion(cases: &[Judged<'_>]) -> Confusion {
+pub fn confusion(cases: &[ScoredCase<'_>]) -> Confusion {
     let mut counts = Confusion::new();
     for case in cases {
         let truth = match (case.truth.kind, case.truth.effects.first()) {
-            (Kind::Clean, _) => "nothing",
+            (Kind::Clean, _) => Verdict::Nothing,
             (Kind::Single | Kind::Unknown | Kind::Mistake, Some(e)) if e.detectability.is_identifiable() => {
-                &e.effect
+                Verdict::Named(e.effect.clone())
             }
             _ => continue,
         };
-        *counts.entry(truth.to_owned()).or_default().entry(case.said().to_owned()).or_default() += 1;
+        *counts.entry(truth).or_default().entry(case.verdict()).or_default() += 1;
     }
     counts
 }
 
-/// What was said of effects that imitate each other, distinguishable or not. A name in brackets is
-/// not the strongest finding but one that it cannot distinguish from that.
-pub fn conflicts(cases: &[Judged<'_>]) -> BTreeMap<String, Confusion> {
-    let mut counts: BTreeMap<String, Confusion> = BTreeMap::new();
+/// Of each pair of effects that imitate each other: truth → answer → number of cases, in words.
+pub type Conflicts = BTreeMap<String, BTreeMap<String, BTreeMap<String, usize>>>;
+
+/// What was answered to effects that imitate each other, distinguishable or not. A name in brackets
+/// is not the strongest finding but one that it cannot distinguish from that.
+pub fn conflicts(cases: &[ScoredCase<'_>]) -> Conflicts {
+    let mut counts = Conflicts::new();
     for case in cases {
         let Some(pair) = &case.truth.conflict else { continue };
         let Some(concealed) = case.truth.effects.first() else { continue };
-        let of = match concealed.detectability.is_identifiable() {
-            true => concealed.effect.clone(),
+        let truth = match concealed.detectability.is_identifiable() {
+            true => concealed.effect.to_string(),
             false => format!("{}, not identifiable", concealed.effect),
         };
-        let said = match case.said() != concealed.effect && case.in_class() {
-            true => format!("{} ({})", case.said(), concealed.effect),
-            false => case.said().to_owned(),
+        let verdict = case.verdict();
+        let is_named = verdict == Verdict::Named(concealed.effect.clone());
+        let answer = match !is_named && case.in_class() {
+            true => format!("{verdict} ({})", concealed.effect),
+            false => verdict.to_string(),
         };
-        *counts.entry(pair.clone()).or_default().entry(of).or_default().entry(said).or_default() += 1;
+        *counts.entry(pair.clone()).or_default().entry(truth).or_default().entry(answer).or_default() += 1;
     }
     counts
 }
 
 /// Names of the effects that the library does not have: "unexplained" is the right answer to them.
-pub fn outside(cases: &[Judged<'_>]) -> BTreeSet<String> {
+pub fn outside(cases: &[ScoredCase<'_>]) -> BTreeSet<EffectName> {
     let unknown = cases.iter().filter(|case| case.truth.kind == Kind::Unknown);
     unknown.flat_map(|case| case.truth.effects.iter().map(|e| e.effect.clone())).collect()
 }
 
 /// As a table with a line for each truth.
-pub fn confusion_text(heading: &str, counts: &Confusion) -> String {
+pub fn confusion_text<T: Display>(heading: &str, counts: &BTreeMap<T, BTreeMap<T, usize>>) -> String {
     let mut text = format!("\n{heading:27} answers\n");
     for (truth, row) in counts {
         let total: usize = row.values().sum();
-        let mut cells: Vec<(&String, &usize)> = row.iter().collect();
+        let mut cells: Vec<(&T, &usize)> = row.iter().collect();
         cells.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
         let cells: Vec<String> = cells.iter().map(|(answer, count)| format!("{answer} {count}")).collect();
         text += &format!("{truth:23} {total:3}: {}\n", cells.join(", "));
@@ -187,8 +196,8 @@ pub struct Failure {
 }
 
 /// Every case where something went wrong that need not have.
-pub fn failures(cases: &[Judged<'_>]) -> Vec<Failure> {
-    let what = |case: &Judged<'_>| -> Option<&'static str> {
+pub fn failures(cases: &[ScoredCase<'_>]) -> Vec<Failure> {
+    let what = |case: &ScoredCase<'_>| -> Option<&'static str> {
         let is_identifiable = case.truth.effects.iter().all(|e| e.detectability.is_identifiable());
         let is_below = case.truth.effects.iter().all(|e| !e.detectability.is_detectable());
         let has_mistake = case.findings.iter().any(Finding::is_mistake);
@@ -218,7 +227,7 @@ pub fn failures(cases: &[Judged<'_>]) -> Vec<Failure> {
             _ => return None,
         })
     };
-    let failure = |case: &Judged<'_>| {
+    let failure = |case: &ScoredCase<'_>| {
         let truth: Vec<String> = case
             .truth
             .effects

@@ -115,7 +115,7 @@ impl Serialize for Reached {
         };
         json!({
             "what": self.target.what,
-            "count": count.map(|rate| rate.count), "of": count.map(|rate| rate.of),
+            "count": count.map(|rate| rate.count), "of": count.map(|rate| rate.total),
             "share": self.measured.value(), "lo": interval.map(|ends| ends[0]), "hi": interval.map(|ends| ends[1]),
             "from": self.target.from, "to": if self.target.to.is_finite() { Some(self.target.to) } else { None },
             "met": self.missed().is_none(),

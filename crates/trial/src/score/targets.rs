@@ -7,12 +7,12 @@ use super::target::{Measured, Reached, Target};
 /// A target, and how it is measured.
 type OfPart = (Target, fn(&Part) -> Measured);
 
-const fn least(what: &'static str, from: f64, of: fn(&Part) -> Measured) -> OfPart {
-    (Target { what, from, to: 1.0 }, of)
+const fn least(what: &'static str, from: f64, measure: fn(&Part) -> Measured) -> OfPart {
+    (Target { what, from, to: 1.0 }, measure)
 }
 
-const fn most(what: &'static str, to: f64, of: fn(&Part) -> Measured) -> OfPart {
-    (Target { what, from: 0.0, to }, of)
+const fn most(what: &'static str, to: f64, measure: fn(&Part) -> Measured) -> OfPart {
+    (Target { what, from: 0.0, to }, measure)
 }
 
 use Measured::{Number, Rate as Share};
@@ -39,7 +39,7 @@ static TARGETS: [OfPart; 13] = [
 
 /// Every target that a case speaks about, missed ones first.
 pub fn reached(part: &Part) -> Vec<Reached> {
-    let of_target = |(target, of): &'static OfPart| Reached { target, measured: of(part) };
+    let of_target = |(target, measure): &'static OfPart| Reached { target, measured: measure(part) };
     let all = TARGETS.iter().map(of_target).filter(|reached| reached.measured.value().is_some());
     let (missed, met): (Vec<Reached>, Vec<Reached>) = all.partition(|reached| reached.missed().is_some());
     missed.into_iter().chain(met).collect()
@@ -53,9 +53,9 @@ mod tests {
     #[test]
     fn what_is_missed_comes_first_and_what_nobody_asked_is_not_there() {
         let part = Part {
-            clean: Clean { silent: Rate { count: 97, of: 100 }, ..Clean::default() },
-            coverage: Coverage { all: Rate { count: 99, of: 100 }, ..Coverage::default() },
-            right_or_inseparable: Rate { count: 96, of: 100 },
+            clean: Clean { silent: Rate { count: 97, total: 100 }, ..Clean::default() },
+            coverage: Coverage { all: Rate { count: 99, total: 100 }, ..Coverage::default() },
+            right_or_inseparable: Rate { count: 96, total: 100 },
             gain_over_oracle: Some(0.96),
             ..Part::default()
         };

@@ -3,8 +3,8 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use super::*;
+use crate::ground_truth::{Concealed, Detectability, Parameter, PredictionQuery};
 use crate::place::Place;
-use crate::truth::{Asked, Concealed, Detectability, Parameter};
 
 /// A place by its words.
 fn place(location: &str) -> Place {
@@ -38,8 +38,8 @@ fn concealed(effect: &str, location: &str, parameter: (&str, f64), separation: f
     }
 }
 
-fn truth(case: usize, kind: Kind, effects: Vec<Concealed>) -> Truth {
-    Truth {
+fn truth(case: usize, kind: Kind, effects: Vec<Concealed>) -> GroundTruth {
+    GroundTruth {
         case: format!("rig/case-{case:04}"),
         kind,
         conflict: None,
@@ -56,7 +56,7 @@ fn truth(case: usize, kind: Kind, effects: Vec<Concealed>) -> Truth {
         oracle_gain: Some(0.8),
         seed: None,
         residuals: Vec::new(),
-        asked: None,
+        query: None,
     }
 }
 
@@ -78,11 +78,11 @@ fn answer(case: usize, findings: &[(&str, &str, Value)], unexplained: bool) -> A
         answer: json!({"verdict": "mismatch", "findings": findings, "unexplained": unexplained,
                        "heldout_before_um": 2.0, "heldout_after_um": 1.0}),
         sha256: BTreeMap::new(),
-        asked_um: None,
+        predicted_um: None,
     }
 }
 
-fn example() -> (Vec<Truth>, Vec<Answer>) {
+fn example() -> (Vec<GroundTruth>, Vec<Answer>) {
     let friction = || concealed("friction", "slide", ("force_n", 1.0), 20.0);
     let joint = || concealed("joint_compliance", "station 205.0 mm", ("bending_urad_per_nm", 5.0), 8.0);
     let force = |lo: f64, hi: f64| json!({"name": "force_n", "value": 1.0, "lo": lo, "hi": hi});
@@ -122,7 +122,7 @@ fn a_small_trial_is_counted_by_hand() {
     let (truths, answers) = example();
     let score = score(&truths, &answers, &[]);
     let Part { cases, clean, single, pairs, unknown, .. } = &score.whole;
-    let rate = |count, of| Rate { count, of };
+    let rate = |count, total| Rate { count, total };
     assert_eq!((*cases, score.unanswered), (9, 1));
     assert_eq!(clean.false_names, rate(1, 2));
     // a sleeve at 205 mm is where the joint is; the class of the wrong name holds friction
@@ -190,7 +190,7 @@ fn as_json_a_score_has_the_keys_that_it_always_had() {
 #[test]
 fn a_mistake_is_named_something_else_or_passed_over() {
     let unit = || concealed("unit_mistake", "load_n", ("factor", 9.80665), 20.0);
-    let mut truths: Vec<Truth> = (1..=4).map(|case| truth(case, Kind::Mistake, vec![unit()])).collect();
+    let mut truths: Vec<GroundTruth> = (1..=4).map(|case| truth(case, Kind::Mistake, vec![unit()])).collect();
     truths.push(truth(5, Kind::Clean, vec![]));
     let factor = |value: f64| json!({"name": "factor", "value": value, "lo": value, "hi": value});
     let answers = vec![
@@ -201,7 +201,7 @@ fn a_mistake_is_named_something_else_or_passed_over() {
         answer(5, &[("unit_mistake", "load_n", factor(25.4))], false),
     ];
     let part = score(&truths, &answers, &[]).whole;
-    let rate = |count, of| Rate { count, of };
+    let rate = |count, total| Rate { count, total };
     let Mistakes { named, placed, as_other, silent, invented, .. } = &part.mistakes;
     assert_eq!((*named, *placed), (rate(2, 4), rate(1, 4)));
     assert_eq!((*as_other, *silent, *invented), (rate(1, 4), rate(1, 4), rate(1, 1)));
@@ -219,7 +219,8 @@ fn misread_readings_are_remarks_and_never_findings() {
         place: Place { row: Some(row), channel: Some("dy".into()), ..Place::default() },
         ..concealed("outlier", "row", ("um", 50.0), 20.0)
     };
-    let truths: Vec<Truth> = (1..=3).map(|case| truth(case, Kind::Suspect, vec![at(4), at(9)])).collect();
+    let truths: Vec<GroundTruth> =
+        (1..=3).map(|case| truth(case, Kind::Suspect, vec![at(4), at(9)])).collect();
     let with = |case: usize, rows: &[usize], findings: &[(&str, &str, Value)]| {
         let mut answer = answer(case, findings, false);
         let suspects: Vec<Value> =
@@ -230,15 +231,15 @@ fn misread_readings_are_remarks_and_never_findings() {
     let none = json!({"name": "um", "value": 0.0, "lo": 0.0, "hi": 0.0});
     let answers = vec![with(1, &[9, 4], &[]), with(2, &[4], &[]), with(3, &[4, 9], &[("slip", "y", none)])];
     let suspects = score(&truths, &answers, &[]).whole.suspects;
-    assert_eq!(suspects.remarked, Rate { count: 2, of: 3 });
-    assert_eq!(suspects.named, Rate { count: 1, of: 3 });
+    assert_eq!(suspects.remarked, Rate { count: 2, total: 3 });
+    assert_eq!(suspects.named, Rate { count: 1, total: 3 });
 }
 
 #[test]
 fn below_the_limit_silence_is_right_and_what_accompanies_an_effect_is_not_asked() {
     let number = json!({"name": "um", "value": 0.0, "lo": 0.0, "hi": 0.0});
     let faint = |case| truth(case, Kind::Single, vec![concealed("creep", "rod", ("per_decade", 0.1), 1.0)]);
-    let companion = |kind: Kind, case: usize, effect: &str| Truth {
+    let companion = |kind: Kind, case: usize, effect: &str| GroundTruth {
         companions: vec![concealed("friction", "slide", ("force_n", 1.0), 9.0)],
         ..truth(case, kind, vec![concealed(effect, "rod", ("um", 5.0), 9.0)])
     };
@@ -248,7 +249,7 @@ fn below_the_limit_silence_is_right_and_what_accompanies_an_effect_is_not_asked(
         faint(3),
         companion(Kind::Single, 4, "creep"),
         companion(Kind::Unknown, 5, "Hertzian seat"),
-        Truth { numbers_off: 2.0, ..truth(6, Kind::Clean, vec![]) },
+        GroundTruth { numbers_off: 2.0, ..truth(6, Kind::Clean, vec![]) },
     ];
     let answers = vec![
         answer(1, &[], false),
@@ -259,7 +260,7 @@ fn below_the_limit_silence_is_right_and_what_accompanies_an_effect_is_not_asked(
         answer(6, &[("stiffness_scale", "rod", number)], false),
     ];
     let part = score(&truths, &answers, &[]).whole;
-    let rate = |count, of| Rate { count, of };
+    let rate = |count, total| Rate { count, total };
     let Below { silent, silent_or_right, wrongly_named } = part.below;
     assert_eq!((silent, silent_or_right, wrongly_named), (rate(1, 3), rate(2, 3), rate(1, 3)));
     assert_eq!((part.single.location_ok, part.unknown.called_unknown), (rate(1, 1), rate(1, 1)));
@@ -270,9 +271,9 @@ fn below_the_limit_silence_is_right_and_what_accompanies_an_effect_is_not_asked(
 #[test]
 fn a_class_is_right_where_the_oracle_cannot_distinguish_it() {
     let friction = |class: &[&str]| {
-        let of = concealed("friction", "slide", ("force_n", 1.0), 2.0);
-        let class = class.iter().map(|name| (*name).to_owned()).collect();
-        Concealed { detectability: Detectability { class, ..of.detectability }, ..of }
+        let friction = concealed("friction", "slide", ("force_n", 1.0), 2.0);
+        let class = class.iter().map(|name| EffectName::from(*name)).collect();
+        Concealed { detectability: Detectability { class, ..friction.detectability }, ..friction }
     };
     let truths = vec![
         truth(1, Kind::Single, vec![friction(&["load_offset"])]),
@@ -312,10 +313,10 @@ fn places_are_compared_as_data() {
 fn other_readings_are_scored_against_the_oracle() {
     let (mut truths, mut answers) = example();
     // of an identifiable case, of one that is not, and of one whose answer leaves a reading out
-    for (k, said) in [(2, vec![1.2, 2.2]), (5, vec![9.0, 9.0]), (3, vec![1.0])] {
+    for (k, predicted) in [(2, vec![1.2, 2.2]), (5, vec![9.0, 9.0]), (3, vec![1.0])] {
         let oracle_um = Some(vec![1.1, 2.1]);
-        truths[k].asked = Some(Asked { true_um: vec![1.0, 2.0], oracle_um, is_any_frame: false });
-        answers[k].asked_um = Some(said);
+        truths[k].query = Some(PredictionQuery { true_um: vec![1.0, 2.0], oracle_um, is_any_frame: false });
+        answers[k].predicted_um = Some(predicted);
     }
     let part = score(&truths, &answers, &[]).whole;
     assert!((part.counterfactual_over_oracle.unwrap() - 2.0).abs() < 1e-9);
@@ -327,7 +328,7 @@ fn other_readings_are_scored_against_the_oracle() {
 fn what_was_measured_once_more_settles_or_does_not() {
     let (truths, answers) = example();
     let sealed = Sealed { truths, given: answers, names_manifest: true };
-    let due: Vec<String> = sealed.due().into_iter().map(|due| due.case).collect();
+    let due: Vec<String> = sealed.pending().into_iter().map(|pending| pending.case).collect();
     assert_eq!(due, [3, 4, 5, 7].map(|case| format!("rig/case-{case:04}")));
     let diagnosed = |effect: &str, place: &str, others: &[&str]| {
         let finding =
@@ -344,7 +345,7 @@ fn what_was_measured_once_more_settles_or_does_not() {
     let score = sealed.score(&outcomes);
     let next = &score.whole.next_measurement_ok;
     // a rival that is new is another question
-    assert_eq!((next.settled, next.not_proposed), (Rate { count: 1, of: 2 }, 1));
+    assert_eq!((next.settled, next.not_proposed), (Rate { count: 1, total: 2 }, 1));
     assert_eq!(next.not_done, BTreeMap::from([("the rod broke".to_owned(), 1)]));
     assert_eq!(next.open[0].case, "rig/case-0005");
     let text = score.text();
@@ -364,7 +365,7 @@ fn an_interval_without_an_end_goes_on_for_ever() {
     let truth = truth(1, Kind::Single, vec![concealed("friction", "slide", ("force_n", 1.0), 20.0)]);
     let open = json!({"name": "force_n", "value": 1.0, "lo": 0.9, "hi": null});
     let answer = answer(1, &[("friction", "slide", open)], false);
-    let judged = Judged::new(&truth, &answer);
-    assert!(!judged.failed);
-    assert_eq!(judged.covered(&truth.effects[0]), [("force_n".to_owned(), true)]);
+    let scored = ScoredCase::new(&truth, &answer);
+    assert!(!scored.failed);
+    assert_eq!(scored.covered(&truth.effects[0]), [("force_n".to_owned(), true)]);
 }

@@ -3,7 +3,8 @@
 use super::happened::sockets;
 use super::*;
 use crate::calibration::campaign::Distance;
-use crate::inference::{CorrelatedNoise, Limit, Linearised, Pairs, infer};
+use crate::diagnosis::Limitation;
+use crate::inference::{CorrelatedNoise, Linearised, Pairs, infer};
 use crate::robot::Parameter;
 use nalgebra::DMatrix;
 
@@ -78,7 +79,10 @@ fn a_clamp_of_five_times_the_noise_counts_a_twenty_fifth() {
     let found = diagnose_calibrated(&campaign, calibration.clone()).unwrap();
     assert!(found.diagnosis.findings.is_empty());
     assert!(
-        found.limits.iter().any(|limit| matches!(limit, Limit::NoisyGroup(name, ..) if name == "clamp 2"))
+        found
+            .limits
+            .iter()
+            .any(|limit| matches!(limit, Limitation::NoisyGroup(name, ..) if name == "clamp 2"))
     );
     let (model, evidence) = (found.model, found.evidence);
     let rows = &campaign.measurements.rows;

@@ -3,11 +3,16 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::entry::{Context, Entry, RigEffect, UNBOUNDED, entry, of, parameter};
+use super::entry::{
+    Context, Entry, RigEffect, UNBOUNDED, Usual, entry, number, out_of_the_readings, parameter,
+};
 use super::places::runs_by_sensor;
-use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::datum::Datum;
-use crate::inference::{Effect, Estimate, FindingPart, Kind, Location, Reported, Run, Variable, WrittenTo};
+use crate::diagnosis::rig::mechanics::action::Action;
+use crate::diagnosis::rig::recording::columns::column;
+use crate::diagnosis::rig::recording::datum::Datum;
+use crate::inference::{
+    Effect, Estimate, FindingPart, Kind, Location, Quantity, Reported, Run, Variable, WrittenTo,
+};
 use crate::spatial::Axis;
 use crate::units::UM;
 
@@ -42,29 +47,36 @@ pub static SLIP: RigEffect = RigEffect {
         seen_along: |_| vec![Variable::Order],
         direct_check: None,
     },
+    usual: &[Usual::Share(STEP)],
     needs_rod: false,
     candidates: slips,
     missing: |_| "no run has two readings on either side of a slip",
     observed: |finding, _| {
-        let besides = |channel: Axis| {
-            let shift = finding.quantity(channel_um(channel))?;
-            Some(format!(", d{channel} by {}", shift.say("µm")))
-        };
-        let besides: String = Axis::ALL.into_iter().filter_map(besides).collect();
-        format!("The readings jump by {} ({}){besides}", of(finding, "um").say("µm"), finding.location)
+        let others = finding.parts.iter().zip(&finding.estimates).skip(1);
+        let mut others: Vec<(Axis, Quantity)> = others
+            .filter_map(|(part, shift)| Some((shifted_channel(&part.location)?, shift.quantity())))
+            .collect();
+        others.sort_by_key(|(channel, _)| *channel);
+        let one = |(channel, shift): &(Axis, Quantity)| format!(", d{channel} by {}", shift.say("µm"));
+        let besides: String = others.iter().map(one).collect();
+        format!("The readings jump by {} ({}){besides}", number(finding, "um").say("µm"), finding.location)
     },
+    write: out_of_the_readings,
 };
 
-/// The shift of a channel beside that of another one, at the same row.
-fn channel_um(channel: Axis) -> &'static str {
-    ["dx_um", "dy_um", "dz_um"][channel.index()]
+/// The channel that a slip shifts.
+fn shifted_channel(location: &Location) -> Option<Axis> {
+    match location {
+        Location::AfterRow { run, channel, .. } => Some(channel.unwrap_or(run.axis)),
+        _ => None,
+    }
 }
 
 /// Estimates of the slips that are one finding: all but the first are those of their channels.
 pub(in crate::diagnosis::rig) fn by_channel(parts: &[FindingPart], estimates: &mut [Estimate]) {
     for (part, estimate) in parts.iter().zip(estimates).skip(1) {
-        if let Location::AfterRow { run, channel, .. } = &part.location {
-            estimate.name = channel_um(channel.unwrap_or(run.axis)).into();
+        if let Some(channel) = shifted_channel(&part.location) {
+            estimate.name = column(channel);
         }
     }
 }

@@ -1,12 +1,15 @@
 //! What the rod makes of its loads and of their history: curvature, creep, hysteresis.
 
-use super::entry::{Context, Entry, RigEffect, along_the_load, alternative, entry, of, parameter};
-use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::load_history::{
+use super::entry::{
+    Context, Entry, RigEffect, Usual, along_the_load, alternative, entry, nowhere, number, of_action,
+    parameter,
+};
+use crate::diagnosis::rig::mechanics::action::Action;
+use crate::diagnosis::rig::mechanics::load_history::{
     Clock, History, Loop, Memory, Onset, creep, hysteresis, is_stated, onsets, warmth,
 };
+use crate::diagnosis::rig::mechanics::recovery::recovery;
 use crate::diagnosis::rig::model::{Body, RigModel};
-use crate::diagnosis::rig::recovery::recovery;
 use crate::inference::{Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::units::significant;
 
@@ -43,10 +46,12 @@ pub static NONLINEAR_STIFFNESS: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(CURVATURE)],
     needs_rod: false,
     candidates: curvature,
     missing: |_| "only one size of load was applied",
     observed: observed_curvature,
+    write: nowhere,
 };
 
 /// The deflection grows under a constant load.
@@ -69,6 +74,7 @@ pub static CREEP: RigEffect = RigEffect {
         seen_along: |_| vec![Variable::TimeInRun],
         direct_check: None,
     },
+    usual: &[Usual::Share(PER_DECADE)],
     needs_rod: false,
     candidates: creeping,
     missing: |_| "no times were recorded (column `time_s`), or they do not differ",
@@ -77,7 +83,7 @@ pub static CREEP: RigEffect = RigEffect {
             Some(History::Creep(clock, _)) => clock.name(),
             _ => "under load",
         };
-        let growth = of(finding, "per_decade").map(|share| 100.0 * share).say("%");
+        let growth = number(finding, "per_decade").map(|share| 100.0 * share).say("%");
         match model.data().iter().any(|d| d.imposed.is_some()) {
             true => {
                 format!("Under a held displacement the load falls by {growth} per decade of time {since}")
@@ -85,6 +91,7 @@ pub static CREEP: RigEffect = RigEffect {
             false => format!("The deflections grow by {growth} per decade of time {since}"),
         }
     },
+    write: nowhere,
 };
 
 /// A rod that is softer when it is warm.
@@ -104,6 +111,7 @@ pub static THERMAL_SOFTENING: RigEffect = RigEffect {
         seen_along: |_| vec![Variable::Temperature],
         direct_check: None,
     },
+    usual: &[Usual::Share(PER_KELVIN)],
     needs_rod: false,
     candidates: |context| {
         // a laminate may stiffen: ten times the usual either way
@@ -116,9 +124,10 @@ pub static THERMAL_SOFTENING: RigEffect = RigEffect {
     },
     missing: |_| "no temperatures were recorded (column `temperature_c`), or they do not differ",
     observed: |finding, _| {
-        let growth = of(finding, "per_k").map(|share| 100.0 * share).say("%");
+        let growth = number(finding, "per_k").map(|share| 100.0 * share).say("%");
         format!("The deflections grow by {growth} per kelvin")
     },
+    write: nowhere,
 };
 
 /// The way down is not the way up.
@@ -138,15 +147,17 @@ pub static HYSTERESIS: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(LOOP)],
     needs_rod: false,
     candidates: lagging,
     missing: |_| "no readings were taken while unloading (column `phase`)",
     observed: |finding, model| {
         let is_open = matches!(history(finding, model), Some(History::Loop(Loop::Remanent)));
         let at = if is_open { "zero load" } else { "half load" };
-        let share = of(finding, "fraction").map(|share| 100.0 * share).say("%");
+        let share = number(finding, "fraction").map(|share| 100.0 * share).say("%");
         format!("The unloading curve lies above the loading curve, by {share} of full scale at {at}")
     },
+    write: nowhere,
 };
 
 /// Quadratic as a symmetric body's is, and linear as a load cell's (its curvature has a direction).
@@ -169,8 +180,10 @@ fn curvature(context: &mut Context) -> Vec<Entry> {
 fn observed_curvature(finding: &Finding, model: &RigModel) -> String {
     let largest = super::entry::largest_load(model.data());
     // deflection over that of the linear rod
-    let quadratic = finding.quantity("per_n2").map(|k| k.map(|k| 1.0 + k * largest * largest));
-    let linear = finding.quantity("per_n").map(|k| k.map(|k| 1.0 + k * largest));
+    let quadratic = of_action(finding, model, |action| matches!(action, Action::PerLoadSquared));
+    let quadratic = quadratic.map(|k| k.map(|k| 1.0 + k * largest * largest));
+    let linear = of_action(finding, model, |action| matches!(action, Action::PerLoad));
+    let linear = linear.map(|k| k.map(|k| 1.0 + k * largest));
     let body = match model.body {
         Body::Rod(_) => "The rod",
         Body::Lines(_) => "The loaded part",

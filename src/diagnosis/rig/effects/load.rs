@@ -1,11 +1,12 @@
 //! What happens to a load before the rod feels it: friction, offset, play, direction.
 
 use super::entry::{
-    Context, Entry, RigEffect, along_the_load, candidate, entry, of, parameter, preferring, said,
+    Context, Entry, RigEffect, Usual, along_the_load, candidate, entry, number, of_action,
+    out_of_the_readings, parameter, preferring, size,
 };
 use super::places::{loaded_axes, sessions};
-use crate::diagnosis::rig::action::{Action, Scope};
-use crate::diagnosis::rig::datum::Datum;
+use crate::diagnosis::rig::mechanics::action::{Action, Scope};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Effect, Finding, Kind, Location, Parameter, Part, Reported, WrittenTo};
 use crate::spatial::Axis;
 use crate::units::{DEG, UM, significant};
@@ -57,6 +58,7 @@ pub static FRICTION: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(SLIDE)],
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_load();
@@ -73,12 +75,12 @@ pub static FRICTION: RigEffect = RigEffect {
     },
     missing: |_| "no load was applied",
     observed: |finding, model| {
-        let (load, force) = (each_load(finding), said(finding, "force_n", "N"));
+        let (load, force) = (each_load(finding), size(finding, "force_n", "N"));
         if model.data().iter().any(|d| d.imposed.is_some()) {
-            let over = finding
-                .quantity("presliding_um")
+            let over = of_action(finding, model, |action| matches!(action, Action::Presliding))
                 .map_or_else(String::new, |travel| format!(" over {} of travel", travel.size().say("µm")));
-            let play = finding.quantity("play_um").map_or_else(String::new, |play| {
+            let play = of_action(finding, model, |action| matches!(action, Action::SliderPlay));
+            let play = play.map_or_else(String::new, |play| {
                 format!(", behind a play of {} on either side", play.size().say("µm"))
             });
             return format!("Friction of {force} resists the motion and turns round with it{over}{play}");
@@ -91,6 +93,7 @@ pub static FRICTION: RigEffect = RigEffect {
             false => format!("About {force} of {load} does not reach the rod (no unloading was recorded)"),
         }
     },
+    write: out_of_the_readings,
 };
 
 /// A hanger that was not counted, or a tare that is off.
@@ -111,6 +114,7 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(TARE)],
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_load();
@@ -123,13 +127,14 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
     missing: |_| "no load was applied",
     observed: |finding, model| {
         if model.data().iter().any(|d| d.imposed.is_some()) {
-            let error = of(finding, "force_n").map(|force| -force).say("N");
+            let error = number(finding, "force_n").map(|force| -force).say("N");
             return format!("The load cell shows {error} too much{}", under(&finding.location));
         }
-        let word = if of(finding, "force_n").value >= 0.0 { "larger" } else { "smaller" };
-        let force = said(finding, "force_n", "N");
+        let word = if number(finding, "force_n").value >= 0.0 { "larger" } else { "smaller" };
+        let force = size(finding, "force_n", "N");
         format!("The true value of {} is {force} {word} than stated", each_load(finding))
     },
+    write: out_of_the_readings,
 };
 
 /// Play of the clamp.
@@ -149,6 +154,7 @@ pub static BACKLASH: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(PLAY)],
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_reading();
@@ -160,9 +166,10 @@ pub static BACKLASH: RigEffect = RigEffect {
     },
     missing: |_| "no channel was read along a load",
     observed: |finding, _| {
-        let (under, play) = (under(&finding.location), said(finding, "play_um", "µm"));
+        let (under, play) = (under(&finding.location), size(finding, "play_um", "µm"));
         format!("The rod moves freely by {play} before it bends{under}")
     },
+    write: out_of_the_readings,
 };
 
 /// A load that is not square to {T}.
@@ -187,11 +194,12 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Angle(ALIGNMENT)],
     needs_rod: true,
     candidates: load_turns,
     missing: |_| "no measured channel would show it",
     observed: |finding, _| {
-        let angle = of(finding, "angle_deg");
+        let angle = number(finding, "angle_deg");
         match &finding.location {
             Location::LoadTurn { from, towards } => {
                 let word = if angle.value >= 0.0 { "towards" } else { "away from" };
@@ -203,6 +211,7 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
             _ => format!("All load directions are rotated together by {}", whole_turn(finding)),
         }
     },
+    write: out_of_the_readings,
 };
 
 /// Friction of loads that are measured while the displacement goes to and fro: one that turns round

@@ -14,11 +14,11 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::super::action::{Action, Weights};
-use super::super::datum::Datum;
 use super::super::numbering::numbered;
 use super::along::{Along, Coordinate, LEAST_SHIFT, SHARE, largest_reading, rival};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
+use crate::diagnosis::rig::mechanics::action::{Action, Weights};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::Location;
 use crate::units::UM;
 
@@ -105,7 +105,7 @@ fn starts(coordinate: &Coordinate, data: &[Datum]) -> Coordinate {
 mod tests {
     use super::super::TIME;
     use super::*;
-    use crate::diagnosis::rig::datum;
+    use crate::diagnosis::rig::recording::datum;
     use crate::rig::readings::Readings;
 
     #[test]
@@ -133,10 +133,10 @@ mod tests {
         let coordinate: Coordinate = data.iter().map(|d| d.time.map(|t| t / 390.0)).collect();
         let entries = all(TIME, &coordinate, &data);
         assert_eq!(entries.len(), 30);
-        let label = |of: &Entry| of.0.location.to_string();
+        let label = |entry: &Entry| entry.0.location.to_string();
         let (_, actions) = entries
             .iter()
-            .find(|of| label(of) == "time, 2 swings, all sensors, since the zero of each run")
+            .find(|entry| label(entry) == "time, 2 swings, all sensors, since the zero of each run")
             .unwrap();
         let Action::Shift(weights) = &actions[1] else { panic!("a shift") };
         for (i, weight) in weights.iter() {

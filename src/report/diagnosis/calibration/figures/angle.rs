@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
+use crate::diagnosis::Limitation;
 use crate::diagnosis::calibration::{CalibrationDiagnosis, Curve};
-use crate::inference::Limit;
 use crate::report::chart::Figure;
 use crate::report::diagnosis::calibration::joints::gear_of;
 use crate::report::pictures::diagnosis::{AngleError, angle_errors};
@@ -20,7 +20,7 @@ const LEVER: f64 = 0.25;
 /// on has no lever to be seen by.
 pub fn errors(found: &CalibrationDiagnosis) -> Vec<Figure> {
     let is_unseen = |joint: usize| {
-        found.limits.iter().any(|limit| matches!(limit, Limit::OnAxis(unseen, _) if *unseen == joint))
+        found.limits.iter().any(|limit| matches!(limit, Limitation::OnAxis(unseen, _) if *unseen == joint))
     };
     let [before, after] =
         [&found.diagnosis.before, &found.diagnosis.after].map(|data| found.model.by_row(data));

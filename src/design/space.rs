@@ -1,0 +1,159 @@
+//! The design space: a design file, checked.
+
+mod file;
+
+use super::catalogue::Tube;
+use super::figure::Goal;
+use super::limits::{Impossible, Limit};
+use crate::rod::{BendFlexibility, Joint, LumpedMass, Rod, Warning};
+
+/// Most combinations of one search.
+pub const MOST_RODS: u64 = 2_000_000_000;
+/// Combinations in a second, for an estimate of the time.
+const USUAL_SPEED: f64 = 1e6;
+
+/// What may vary, what must hold, what counts.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct DesignSpace {
+    /// Name of the file.
+    pub file: String,
+    /// Texts of the file and of its catalogue.
+    pub(super) content: String,
+    /// L1, L2 and bend radius, m; γ, rad; mass at the tip, kg.
+    pub l1: Vec<f64>,
+    #[allow(missing_docs)]
+    pub l2: Vec<f64>,
+    #[allow(missing_docs)]
+    pub gamma: Vec<f64>,
+    #[allow(missing_docs)]
+    pub bend_radius: Vec<f64>,
+    #[allow(missing_docs)]
+    pub tip_mass: Vec<f64>,
+    /// Which of L1, L2, γ, bend radius and tip mass were given as ranges, between whose steps
+    /// values make sense too.
+    pub is_range: [bool; 5],
+    /// How much more flexible bends are than beams.
+    pub bend_flexibility: BendFlexibility,
+    /// Tubes to choose from.
+    pub tubes: Vec<Tube>,
+    /// Both pipes from one tube.
+    pub is_one_tube: bool,
+    /// What sits on every rod.
+    pub masses: Vec<LumpedMass>,
+    #[allow(missing_docs)]
+    pub joints: Vec<Joint>,
+    /// What must hold.
+    pub limits: Vec<Limit>,
+    /// What counts.
+    pub goals: Vec<Goal>,
+    /// What the reader of the file wants its user to know.
+    pub warnings: Vec<Warning>,
+}
+
+/// One combination.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Choice {
+    pub tubes: [usize; 2],
+    pub gamma: f64,
+    pub bend_radius: f64,
+    pub tip_mass: f64,
+    pub l1: f64,
+    pub l2: f64,
+}
+
+impl DesignSpace {
+    /// Number of combinations.
+    pub fn combinations(&self) -> u64 {
+        let tubes = self.tubes.len() as u128;
+        let others = [&self.gamma, &self.bend_radius, &self.tip_mass, &self.l1, &self.l2];
+        let all = others.iter().map(|values| values.len() as u128).product::<u128>()
+            * if self.is_one_tube { tubes } else { tubes * tubes };
+        u64::try_from(all).unwrap_or(u64::MAX)
+    }
+
+    /// How many rods that would be and how long they would take, where they are more than a search
+    /// takes.
+    pub fn is_too_much(&self) -> Option<String> {
+        let all = self.combinations();
+        (all > MOST_RODS).then(|| {
+            let hours = all as f64 / USUAL_SPEED / 3600.0;
+            format!(
+                "{all} rods, about {} of computing",
+                if hours > 48.0 { format!("{:.0} days", hours / 24.0) } else { format!("{hours:.0} hours") }
+            )
+        })
+    }
+
+    /// The combination of a number below [`DesignSpace::combinations`].
+    pub(super) fn choice(&self, index: u64) -> Choice {
+        let mut rest = index;
+        let mut next = |count: usize| {
+            let digit = rest % count as u64;
+            rest /= count as u64;
+            digit as usize
+        };
+        let l2 = self.l2[next(self.l2.len())];
+        let l1 = self.l1[next(self.l1.len())];
+        let tip_mass = self.tip_mass[next(self.tip_mass.len())];
+        let bend_radius = self.bend_radius[next(self.bend_radius.len())];
+        let gamma = self.gamma[next(self.gamma.len())];
+        let second = next(self.tubes.len());
+        let first = if self.is_one_tube { second } else { next(self.tubes.len()) };
+        Choice { tubes: [first, second], gamma, bend_radius, tip_mass, l1, l2 }
+    }
+
+    /// The rod of a combination, or why it is none.
+    ///
+    /// # Errors
+    /// Why it is none.
+    pub fn rod(&self, index: u64) -> std::result::Result<Rod, Impossible> {
+        let choice = self.choice(index);
+        let [first, second] = choice.tubes.map(|tube| self.tubes[tube].pipe.clone());
+        let mut rod = Rod::new(format!("design {index}"), choice.l1, choice.l2, first).with_pipe2(second);
+        self.shape(&choice, &mut rod);
+        rod.masses.clone_from(&self.masses);
+        rod.joints.clone_from(&self.joints);
+        self.possible(&rod)?;
+        Ok(rod)
+    }
+
+    /// Names of a combination's tubes, one where they are the same.
+    pub fn tubes_of(&self, index: u64) -> Vec<String> {
+        let [first, second] = self.choice(index).tubes;
+        let name = |tube: usize| self.tubes[tube].name.clone();
+        if first == second { vec![name(first)] } else { vec![name(first), name(second)] }
+    }
+
+    /// Gives `rod` the shape of a choice; its tubes stay.
+    pub(super) fn shape(&self, choice: &Choice, rod: &mut Rod) {
+        rod.l1 = choice.l1;
+        rod.l2 = choice.l2;
+        rod.gamma = choice.gamma;
+        rod.bend_radius = choice.bend_radius;
+        rod.bend_flexibility = self.bend_flexibility;
+        rod.tip_mass = choice.tip_mass;
+    }
+
+    pub(super) fn possible(&self, rod: &Rod) -> std::result::Result<(), Impossible> {
+        if rod.bend_radius > 0.0 && rod.tangent_length() > rod.l1.min(rod.l2) {
+            return Err(Impossible::BendDoesNotFit);
+        }
+        if rod.bend_radius > 0.0 && rod.turn() > 0.0 && rod.bend_radius < rod.bend.section.height() / 2.0 {
+            return Err(Impossible::BendTighterThanTube);
+        }
+        let mut stations =
+            self.masses.iter().map(|mass| mass.station).chain(self.joints.iter().map(|joint| joint.station));
+        let length = if self.masses.len() + self.joints.len() > 0 { rod.length() } else { 0.0 };
+        match stations.any(|station| station > length) {
+            true => Err(Impossible::StationBeyondTip),
+            false => Ok(()),
+        }
+    }
+
+    /// Price of the pipes of a combination: each to the corner, along its centreline.
+    pub(super) fn price(&self, choice: &Choice) -> f64 {
+        let [first, second] = choice.tubes.map(|tube| self.tubes[tube].price_per_m.unwrap_or(f64::NAN));
+        first * choice.l1 + second * choice.l2
+    }
+}

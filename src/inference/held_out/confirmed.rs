@@ -1,0 +1,123 @@
+//! Which terms keep their names once held-out data have spoken, and once all that may stand beside
+//! them has.
+
+use crate::inference::columns::background::Folded;
+use crate::inference::columns::linearised::Linearised;
+use crate::inference::held_out::Theme;
+use crate::inference::search::Search;
+use crate::inference::search::parts::{coverage_factor_of, estimates};
+use crate::inference::search::selection::{DiscrepancyModel, NAMED};
+use crate::inference::{ForwardModel, HeldOut, Hypothesis, Kind, Term};
+
+/// A hypothesis without physics that held-out data do not confirm: where they are predicted no
+/// worse without it, nor without it and another one that it undoes, it has no name. What happened
+/// once says nothing of other data. Nor do they speak against an effect in whose place the numbers
+/// of the file would be as far off as they cannot be: these predict as well as it does.
+///
+/// Where a curve would then be left that is less likely than what it takes the place of, by the
+/// odds of a name, the names stay: something is there, and this is likelier.
+///
+/// Nor has a name what most searches without a fold do not find again, where these predict no
+/// better than nothing: something is there, and not the same to all of them.
+pub fn confirmed(
+    model: &Linearised<'_>,
+    search: &Search,
+    folded: &Folded,
+    hypothesis: Hypothesis,
+    before_that: Option<DiscrepancyModel>,
+    held_out: Option<&HeldOut>,
+) -> (Hypothesis, Option<DiscrepancyModel>) {
+    let Some(held_out) = held_out else { return (hypothesis, before_that) };
+    let needless: Vec<&[Theme]> =
+        held_out.losses_together().filter(|(_, loss)| *loss <= 0.0).map(|(themes, _)| themes).collect();
+    let takes_numbers_place = |own: Theme| {
+        let is_other = |term: &&Term| Theme::new(&model.candidates()[term.candidate]) != own;
+        let others: Vec<Term> = hypothesis.terms.iter().filter(is_other).cloned().collect();
+        folded.is_implausible(&search.fit(&others)) && !folded.is_implausible(&hypothesis)
+    };
+    let is_confirmed = |term: &Term| {
+        let candidate = &model.candidates()[term.candidate];
+        let own = Theme::new(candidate);
+        let is_needed =
+            held_out.independent_loss(own) > 0.0 && !needless.iter().any(|themes| themes.contains(&own));
+        candidate.effect.kind == Kind::Event || is_needed || takes_numbers_place(own)
+    };
+    let is_found_again = |term: &Term| {
+        let candidate = &model.candidates()[term.candidate];
+        let found = held_out.found(model.candidates(), Theme::new(candidate));
+        is_reproduced(candidate.effect.kind, held_out.gain, found)
+    };
+    let again: Vec<Term> = hypothesis.terms.iter().filter(|term| is_found_again(term)).cloned().collect();
+    if again.len() < hypothesis.terms.len() {
+        let shorter = search.fit(&again);
+        if let Some(left_over) = search.remains(&shorter) {
+            return (shorter, Some(left_over));
+        }
+    }
+    let kept: Vec<Term> = hypothesis.terms.iter().filter(|term| is_confirmed(term)).cloned().collect();
+    if kept.len() == hypothesis.terms.len() {
+        return (hypothesis, before_that);
+    }
+    let shorter = search.fit(&kept);
+    let left_over = search.remains(&shorter);
+    let is_likelier = |longer: &Hypothesis| hypothesis.log_probability > longer.log_probability + NAMED.ln();
+    if let Some(DiscrepancyModel::Curve(longer)) = &left_over
+        && before_that.is_none()
+        && is_likelier(longer)
+    {
+        return (hypothesis, None);
+    }
+    (shorter, left_over)
+}
+
+/// True of what happened once, of what predicts held-out data, and of what more than half of the
+/// searches without a fold find again.
+fn is_reproduced(kind: Kind, gain: f64, (found, of): (usize, usize)) -> bool {
+    kind != Kind::Physics || gain > 0.0 || 2 * found > of
+}
+
+/// A hypothesis without effects of which, with all else that may be there, nothing is as good an
+/// estimate as any other: the curve beside it may be as well, or zeros that differ from run to run.
+pub fn apart_from_nothing(
+    model: &Linearised<'_>,
+    search: &Search,
+    hypothesis: Hypothesis,
+    left_over: Option<DiscrepancyModel>,
+) -> (Hypothesis, Option<DiscrepancyModel>) {
+    let beside = left_over.as_ref().and_then(DiscrepancyModel::curve);
+    let coverage_factor = coverage_factor_of(search, &hypothesis);
+    let is_apart = |position: &usize| {
+        let candidate = &model.candidates()[hypothesis.terms[*position].candidate];
+        let estimates = estimates(model, search, &hypothesis, *position, beside, coverage_factor);
+        let parameters = estimates.iter().zip(&candidate.parameters);
+        let is_event_beside_curve = candidate.effect.kind == Kind::Event && beside.is_some();
+        is_event_beside_curve
+            || parameters.into_iter().any(|(own, p)| p.neutral < own.low || p.neutral > own.high)
+    };
+    let kept: Vec<usize> = (0..hypothesis.terms.len()).filter(is_apart).collect();
+    let terms: Vec<Term> = kept.iter().map(|&position| hypothesis.terms[position].clone()).collect();
+    if terms.len() == hypothesis.terms.len() {
+        return (hypothesis, left_over);
+    }
+    let shorter = search.fit(&terms);
+    // where nothing but the curve would be left, or nothing but the effect, it is better named than
+    // not
+    match (search.remains(&shorter), beside.is_some()) {
+        (Some(rest), true) => (shorter, Some(rest)),
+        (None, false) => (shorter, None),
+        _ => (hypothesis, left_over),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_neither_predicts_nor_comes_back_has_no_name() {
+        assert!(!is_reproduced(Kind::Physics, -0.1, (2, 4)));
+        assert!(is_reproduced(Kind::Physics, -0.1, (3, 4)));
+        assert!(is_reproduced(Kind::Physics, 0.01, (0, 4)));
+        assert!(is_reproduced(Kind::Event, -0.1, (0, 4)) && is_reproduced(Kind::Mistake, -0.1, (0, 4)));
+    }
+}

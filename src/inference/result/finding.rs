@@ -1,0 +1,231 @@
+//! A finding, complete in itself: what, where, how large, how sure, what else it may be, what to
+//! do.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::inference::{
+    Description, Effect, Hypothesis, Kind, Location, Proposal, Quantity, Term, WrittenTo,
+};
+
+/// An effect that was adopted: one term of the hypothesis, or several that are reported as one.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Finding {
+    /// What it is.
+    pub effect: &'static Effect,
+    /// Where it is.
+    pub location: Location,
+    /// What it amounts to.
+    pub estimates: Vec<Estimate>,
+    /// The finding in words, with its numbers.
+    pub description: Description,
+    /// What explains it as well, likeliest first, its own places included.
+    pub rivals: Vec<Rival>,
+    /// Probability that noise alone fits as much better.
+    pub p_value: f64,
+    /// Root mean square of what it explains, in the unit of the evidence.
+    pub explains: f64,
+    /// How many searches without a part of the data find it again, of how many. `None` without
+    /// folds, and of a mistake: it is undone before there is a model whose errors could be held
+    /// out, and its odds stand in `p_value`.
+    pub found_in_folds: Option<(usize, usize)>,
+    /// Share of the squares of the held-out errors before that comes back where it is left out of
+    /// what the others hold; negative where it does harm. `None` where `found_in_folds` is.
+    pub held_out_loss: Option<f64>,
+    /// Which file holds it once it is corrected; of a mistake that which it is undone in.
+    pub written_to: WrittenTo,
+    /// The measurement that would separate it from its rivals.
+    pub next: Option<Proposal>,
+    /// Its terms, the strongest first.
+    pub parts: Vec<FindingPart>,
+}
+
+/// One term of a finding.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct FindingPart {
+    /// The candidate with its values.
+    pub term: Term,
+    /// Where it is, the form of its law included.
+    pub location: Location,
+    /// Value and 95 % interval of each of its parameters.
+    pub estimates: Vec<Estimate>,
+    /// Its first parameter among those of the hypothesis: where it stands in the covariance.
+    pub first: usize,
+    /// Posterior covariance of its values, SI.
+    pub covariance: DMatrix<f64>,
+    /// Half of a 95 % interval in standard deviations (GUM: coverage factor).
+    pub coverage_factor: f64,
+    /// Probability that noise alone fits as much better.
+    pub p_value: f64,
+    /// Root mean square of what it explains.
+    pub explains: f64,
+    /// What explains it as well, likeliest first.
+    pub rivals: Vec<Rival>,
+}
+
+/// A number with its 95 % interval, SI.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Estimate {
+    /// Name with its unit, for example `force_n`.
+    pub name: String,
+    /// What one unit of the name is in SI.
+    pub unit: f64,
+    /// Value.
+    pub value: f64,
+    /// Lower end of the interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// An effect that may stand in the place of a part of a finding.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Rival {
+    /// What it is.
+    pub effect: &'static Effect,
+    /// Where it is.
+    pub location: Location,
+    /// The candidate with its values.
+    pub term: Term,
+    /// The whole hypothesis with it instead, its term last.
+    pub hypothesis: Hypothesis,
+    /// How much less probable that hypothesis is: odds, 1 for as probable.
+    pub odds: f64,
+}
+
+impl Rival {
+    /// A rival of a finding without terms.
+    pub(crate) fn without_term(effect: &'static Effect, location: Location, odds: f64) -> Rival {
+        let hypothesis = Hypothesis {
+            terms: Vec::new(),
+            log_probability: -odds.ln(),
+            sigma: 0.0,
+            covariance: DMatrix::zeros(0, 0),
+            background: DVector::zeros(0),
+            background_covariance: DMatrix::zeros(0, 0),
+            determined: 0.0,
+        };
+        let term = Term { candidate: usize::MAX, values: Vec::new() };
+        Rival { effect, location, term, hypothesis, odds }
+    }
+}
+
+impl Estimate {
+    /// In the unit of its name.
+    pub fn quantity(&self) -> Quantity {
+        let unit = self.unit;
+        Quantity { value: self.value / unit, low: self.low / unit, high: self.high / unit }
+    }
+}
+
+impl Finding {
+    /// A finding of one part, of which nothing more is known yet.
+    pub(crate) fn from_part(
+        effect: &'static Effect,
+        location: Location,
+        estimates: Vec<Estimate>,
+        part: FindingPart,
+    ) -> Finding {
+        Finding {
+            effect,
+            location,
+            estimates,
+            description: Description::default(),
+            rivals: Vec::new(),
+            p_value: part.p_value,
+            explains: 0.0,
+            found_in_folds: None,
+            held_out_loss: None,
+            written_to: effect.written_to,
+            next: None,
+            parts: vec![part],
+        }
+    }
+
+    /// A finding that is no term of a model: something that was undone before there was one.
+    pub(crate) fn without_terms(
+        effect: &'static Effect,
+        location: Location,
+        estimates: Vec<Estimate>,
+        description: Description,
+    ) -> Finding {
+        Finding {
+            effect,
+            location,
+            estimates,
+            description,
+            rivals: Vec::new(),
+            p_value: 0.0,
+            explains: 0.0,
+            found_in_folds: None,
+            held_out_loss: None,
+            written_to: effect.written_to,
+            next: None,
+            parts: Vec::new(),
+        }
+    }
+
+    /// What can be weighed, gauged or looked up without any recording, and separates it from some
+    /// of `rivals`: the finding, or else the likeliest such rival.
+    pub fn direct_check(&self, rivals: &[&Rival]) -> Option<Proposal> {
+        /// Ln odds that leave no doubt.
+        const DECISIVE: f64 = 30.0;
+        let effects = std::iter::once(self.effect).chain(rivals.iter().map(|rival| rival.effect));
+        let checked = effects.into_iter().find(|effect| effect.direct_check.is_some())?;
+        // a check of the finding separates it from all others; one of a rival only from that rival
+        let is_separated = |rival: &&&Rival| match checked == self.effect {
+            true => rival.effect != checked,
+            false => rival.effect == checked,
+        };
+        let separated = rivals.iter().filter(is_separated);
+        Some(Proposal {
+            words: checked.direct_check?.to_owned(),
+            plan: None,
+            log_odds: DECISIVE,
+            separates_from: separated.map(|rival| (rival.effect, rival.location.place())).collect(),
+        })
+    }
+
+    /// What sort of thing it is.
+    pub fn kind(&self) -> Kind {
+        self.effect.kind
+    }
+
+    /// The estimate of this name, in its unit.
+    pub fn quantity(&self, name: &str) -> Option<Quantity> {
+        self.estimates.iter().find(|estimate| estimate.name == name).map(Estimate::quantity)
+    }
+
+    /// Effects at their places that stand for it as well, likeliest first, none of them twice.
+    pub fn others(&self) -> Vec<(&'static Effect, Location)> {
+        let mut others = Vec::new();
+        for rival in &self.rivals {
+            let other = (rival.effect, rival.location.place());
+            let is_itself = other.0 == self.effect && other.1 == self.location;
+            if !is_itself && !others.contains(&other) {
+                others.push(other);
+            }
+        }
+        others
+    }
+
+    /// Other effects that stand for it as well, each at its likeliest place, likeliest first.
+    pub fn other_effects(&self) -> Vec<(&'static Effect, Location)> {
+        let mut others: Vec<(&'static Effect, Location)> = Vec::new();
+        for (effect, location) in self.others() {
+            if effect != self.effect && others.iter().all(|(known, _)| *known != effect) {
+                others.push((effect, location));
+            }
+        }
+        others
+    }
+
+    /// Other places where the same effect may be as well, likeliest first.
+    pub fn other_places(&self) -> Vec<Location> {
+        let same = self.others().into_iter().filter(|(effect, _)| *effect == self.effect);
+        same.map(|(_, location)| location).collect()
+    }
+}

@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn what_is_wrong_is_said() {
         let message = |section: &str| robot(&format!("[uncertainty]\n{section}")).unwrap_err().to_string();
-        for (section, words) in [
+        for (section, expected) in [
             ("parameters = [\"base_x\"]\nstd_error = [1]\ncorrelation = []", "theta2_deg"),
             ("parameters = [\"a1_mm\"]\nstd_error = []\ncorrelation = []", "1 numbers"),
             ("parameters = [\"a1_mm\"]\nstd_error = [-1]\ncorrelation = []", "a number >= 0"),
@@ -139,7 +139,7 @@ mod tests {
             ("parameters = [\"a1_mm\", \"d1_mm\"]\nstd_error = [1, 1]\ncorrelation = [[2]]", "from -1 to 1"),
         ] {
             let message = message(section);
-            assert!(message.contains(words) && message.contains("arm.toml:"), "{section}: {message}");
+            assert!(message.contains(expected) && message.contains("arm.toml:"), "{section}: {message}");
         }
     }
 }

@@ -56,7 +56,8 @@ impl Configuration {
     }
 
     /// Displacement of the tip, m, by joints up to `last` that deflect under a force (N) at a point
-    /// of the link that joint moves: Σ J·c·z·(lever × force), the levers as each joint sees them, m.
+    /// of the link that joint moves: Σ J·c·z·(lever × force), the levers from each joint's origin,
+    /// m.
     pub fn joint_deflection_below(
         &self,
         last: usize,

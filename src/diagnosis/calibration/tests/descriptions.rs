@@ -78,10 +78,10 @@ fn every_effect_has_words_and_its_number() {
     for (index, candidate) in named {
         let effect = candidate.effect;
         let finding = as_if(&model, index);
-        let words = finding.description.to_string();
+        let text = finding.description.to_string();
         let is_bare = matches!(model.law(index), Law::MassesUnknown(_));
-        assert!(is_bare || words.contains('±') || words.contains(" to "), "{effect}: {words}");
-        assert!(!words.contains("NaN") && !words.contains('_'), "{effect}: {words}");
+        assert!(is_bare || text.contains('±') || text.contains(" to "), "{effect}: {text}");
+        assert!(!text.contains("NaN") && !text.contains('_'), "{effect}: {text}");
         assert!(!(effect.cause_at)(&candidate.location).contains('_'));
         if !effects.contains(&effect) {
             effects.push(effect);

@@ -25,9 +25,10 @@ impl Mended {
         let stated = search.draft.devices[clamp];
         let name = &self.campaign.measurements.groups[clamp].name;
         let is_place = matches!(change, DraftChange::Placed(_));
-        let (key, letters) = match is_place {
-            true => ("xyz_mm", ["x_mm", "y_mm", "z_mm"]),
-            false => ("rpy_deg", ["roll_deg", "pitch_deg", "yaw_deg"]),
+        // each number as people call it, and with its unit
+        let (key, labels) = match is_place {
+            true => ("xyz_mm", [("x", "x_mm"), ("y", "y_mm"), ("z", "z_mm")]),
+            false => ("rpy_deg", [("roll", "roll_deg"), ("pitch", "pitch_deg"), ("yaw", "yaw_deg")]),
         };
         let numbers = |pose: &Pose| match is_place {
             true => [0, 1, 2].map(|axis| pose.origin[axis] / MM),
@@ -36,9 +37,9 @@ impl Mended {
         let location = Location::key(format!("{name} {key}"));
         if let Some((axis, meant)) = typed {
             let (old, new, why) = (tidy(numbers(&stated)[axis]), tidy(meant.value()), meant.why);
-            let label = letters[axis].split('_').next().unwrap_or_default();
+            let (label, with_unit) = labels[axis];
             let cure = format!("Write {new} for {old} as {label} in {key} of {name}");
-            let estimates = exact(letters[axis], numbers(&frame)[axis]);
+            let estimates = exact(with_unit, numbers(&frame)[axis]);
             self.add(&TYPING_MISTAKE, location, estimates, (&cure, why), log_odds);
             return;
         }

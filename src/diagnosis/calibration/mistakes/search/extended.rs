@@ -58,6 +58,14 @@ impl MistakeSearch<'_> {
         });
         let mut tried: Vec<FittedDraft> = tried.into_iter().flatten().collect();
         tried.sort_by(|a, b| b.score.total_cmp(&a.score));
+        // a move of the base is tried after some rows only: at its own it may be the best
+        let is_move = |state: &FittedDraft| {
+            matches!(state.steps.last(), Some(SearchStep::Elsewhere(DraftChange::Moved(_))))
+        };
+        if let Some(k) = tried.iter().position(is_move) {
+            tried[k] = self.sharpened(tried[k].clone());
+            tried.sort_by(|a, b| b.score.total_cmp(&a.score));
+        }
         tried
     }
 

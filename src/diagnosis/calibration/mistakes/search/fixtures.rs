@@ -32,6 +32,8 @@ const POOR: f64 = 1e-3;
 /// The least that is called another place, m, and another rotation, rad: less is left to the
 /// effects. A number that was meant lies within them too.
 const LEAST: (f64, f64) = (2.0 * MM, 2.0 * DEG);
+/// A neighbour is displaced alike where no more than this share of the displacement is left of it.
+const SHARED: f64 = 0.3;
 /// So many standard deviations are a rotation.
 const SURE: f64 = 4.0;
 
@@ -85,9 +87,22 @@ impl MistakeSearch<'_> {
         (angle > LEAST.1.max(SURE * sd)).then_some(Pose { rotation: found.rotation, ..stated })
     }
 
-    /// False where a clamp stands so near its place that the effects find it.
+    /// False where a clamp stands so near its place that the effects find it, and where the pose
+    /// before or after its own, in another clamp, is displaced about as far: then something moved
+    /// after that pose, not the clamp.
     pub fn is_displaced(&self, state: &FittedDraft, clamp: usize) -> bool {
-        self.displacement(state, clamp).norm() > LEAST.0
+        let displacement = self.displacement(state, clamp);
+        let (thin, off) = (&state.thin, state.fit.offsets(&state.thin, &self.bodies[state.thin.body]));
+        let is_own = |at: usize| thin.group[at] == clamp;
+        let is_alike = |at: usize| {
+            let left = off[at] - displacement;
+            !is_own(at) && left.norm() < SHARED * displacement.norm()
+        };
+        let is_shared = (1..thin.len()).any(|at| {
+            let (before, after) = (at - 1, at);
+            is_own(before) && is_alike(after) || is_own(after) && is_alike(before)
+        });
+        displacement.norm() > LEAST.0 && !is_shared
     }
 
     /// How far a clamp whose place is free stands from where the draft has it, m, in {W}.

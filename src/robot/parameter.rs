@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::units::{DEG, MM, URAD_PER_NM};
+use crate::units::Unit;
 
 /// How often a robot has a parameter of a kind.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -82,22 +82,6 @@ pub enum ParameterGroup {
     Tool,
 }
 
-/// The unit a parameter is shown in.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct Unit {
-    /// As people write it.
-    pub symbol: &'static str,
-    /// As keys end.
-    pub suffix: &'static str,
-    /// In SI.
-    pub si: f64,
-}
-
-const MILLIMETRE: Unit = Unit { symbol: "mm", suffix: "mm", si: MM };
-const DEGREE: Unit = Unit { symbol: "°", suffix: "deg", si: DEG };
-const COMPLIANCE: Unit = Unit { symbol: "µrad/(N·m)", suffix: "urad_per_nm", si: URAD_PER_NM };
-
 impl Parameter {
     /// What it is a number of.
     ///
@@ -167,9 +151,13 @@ impl Parameter {
     /// The unit it is shown in; inside it is SI.
     pub fn unit(self) -> Unit {
         match self.group() {
-            ParameterGroup::BasePosition | ParameterGroup::LinkLength | ParameterGroup::Tool => MILLIMETRE,
-            ParameterGroup::BaseRotation | ParameterGroup::LinkTwist | ParameterGroup::JointZero => DEGREE,
-            ParameterGroup::Compliance => COMPLIANCE,
+            ParameterGroup::BasePosition | ParameterGroup::LinkLength | ParameterGroup::Tool => {
+                Unit::of_key("mm")
+            }
+            ParameterGroup::BaseRotation | ParameterGroup::LinkTwist | ParameterGroup::JointZero => {
+                Unit::of_key("deg")
+            }
+            ParameterGroup::Compliance => Unit::of_key("urad_per_nm"),
         }
     }
 

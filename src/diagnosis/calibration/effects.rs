@@ -116,13 +116,8 @@ fn unit(axis: usize) -> Vector3<f64> {
 }
 
 /// Three parameters of one size.
-fn three(
-    names: &[&str; 3],
-    unit: f64,
-    size: f64,
-    column: impl Fn(usize) -> Column,
-) -> Vec<(Parameter, Column)> {
-    let parameter = |(axis, name): (usize, &&str)| (linear(*name, unit, size), column(axis));
+fn three(names: &[&str; 3], size: f64, column: impl Fn(usize) -> Column) -> Vec<(Parameter, Column)> {
+    let parameter = |(axis, name): (usize, &&str)| (linear(*name, size), column(axis));
     names.iter().enumerate().map(parameter).collect()
 }
 

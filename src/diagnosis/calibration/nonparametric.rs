@@ -36,7 +36,6 @@ use super::model::Context;
 use super::model::entry::{Column, Entry, linear};
 use super::model::law::Frame;
 use crate::inference::{Parameter, Variable};
-use crate::units::{UM, URAD};
 
 /// Cosines along one number, beside the constant.
 const MOST: usize = 6;
@@ -115,7 +114,7 @@ fn vectors(
             Frame::World => &context.patterns.world[axis],
         };
         let column = context.along(pattern, |row, _| weight(row));
-        (linear(format!("{letter}_{name}_um"), UM, size), column)
+        (linear(format!("{letter}_{name}_um"), size), column)
     };
     AXES.iter().enumerate().map(along).collect()
 }
@@ -210,7 +209,7 @@ fn from_a_side(context: &Context, side: &[f64; 3]) -> Entry {
             let held = configuration.flange.rotation.tr_mul(&line(row));
             line(row) * factors.iter().map(|&k| held[k]).product::<f64>()
         });
-        (linear(format!("{}_um", name_of(&factors)), UM, size), column)
+        (linear(format!("{}_um", name_of(&factors)), size), column)
     });
     let [x, y, z] = side.into();
     let label = format!("orientation, from the side ({x:.1} {y:.1} {z:.1})");
@@ -241,7 +240,7 @@ fn by_whole_orientation(context: &Context) -> Entry {
     let mut add = |name: String, size: f64, weight: &dyn Fn(&Matrix3<f64>) -> f64| {
         for (axis, letter) in AXES.iter().enumerate() {
             let column = context.column(|row, _| device(row).column(axis) * weight(&held[row]));
-            parameters.push((linear(format!("{letter}_{name}_um"), UM, size), column));
+            parameters.push((linear(format!("{letter}_{name}_um"), size), column));
         }
     };
     for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
@@ -269,7 +268,7 @@ fn reversal(context: &Context, j: usize, way: Way, sign: &dyn Fn(usize) -> f64) 
     let parameters = (0..=MOST_OF_REVERSAL).map(|k| {
         let column = context.turn(j, |row, _| sign(row) * cosine(k, x[row]));
         let name = format!("reversed_cosine_{k}_urad");
-        (linear(name, URAD, TURN / (1 + k) as f64), column)
+        (linear(name, TURN / (1 + k) as f64), column)
     });
     let joint = format!("joint {}", j + 1);
     let (form, either) = match way {
@@ -303,7 +302,7 @@ fn links(context: &Context) -> Vec<Entry> {
                         let pattern = &context.patterns.link[link][axis];
                         let column = context.along(pattern, |row, _| cosine(k, x[row]) * cosine(l, y[row]));
                         let name = format!("about_{}_cosines_{k}{l}_urad", AXES[axis]);
-                        (linear(name, URAD, TURN / (1 + k + l) as f64), column)
+                        (linear(name, TURN / (1 + k + l) as f64), column)
                     })
                 });
                 let link = format!("link {}", link + 1);
@@ -330,7 +329,7 @@ fn pairs(context: &Context) -> Vec<Entry> {
                 orders.map(move |(k, l)| {
                     let column = context.turn(turned, |row, _| cosine(k, x[row]) * cosine(l, y[row]));
                     let name = format!("joint_{}_cosines_{k}{l}_urad", turned + 1);
-                    (linear(name, URAD, TURN / (1 + k + l) as f64), column)
+                    (linear(name, TURN / (1 + k + l) as f64), column)
                 })
             });
             let joints = format!("joint {} and joint {}", i + 1, j + 1);

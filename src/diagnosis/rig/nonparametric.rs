@@ -33,15 +33,14 @@ use std::sync::Arc;
 use self::along::*;
 pub(super) use self::before::Before;
 use self::cycles::Cycles;
-use super::effects::entry::Entry;
+use super::effects::entry::{Entry, UNBOUNDED, parameter};
 use super::mechanics::action::{Action, Weights};
 use super::mechanics::load_history::runs;
 use super::model::Body;
 use super::numbering::numbered;
 use super::recording::datum::Datum;
-use crate::inference::{Location, Parameter, Variable};
+use crate::inference::{Location, Variable};
 use crate::spatial::Axis;
-use crate::units::UM;
 
 /// Columns of a curve in time that swings: six periods in a recording.
 const FINE: usize = 14;
@@ -64,7 +63,7 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
     let cycles = Cycles::of(data, deflections);
     for (along, coordinate, is_of_line) in coordinates(data) {
         let mut curves: Vec<Entry> = Vec::new();
-        curves.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, PERCENT, SHARE, |i| {
+        curves.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, "percent", SHARE, |i| {
             deflections[i]
         }));
         if along.variable == clock && !is_of_line {
@@ -73,7 +72,7 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
         for (place, group) in if is_of_line { &lines } else { &channels } {
             let largest = group.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
             let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
-            curves.extend(curve(along, place, &coordinate, group, UM, size, |_| 1.0));
+            curves.extend(curve(along, place, &coordinate, group, "um", size, |_| 1.0));
             if along.variable == clock && !is_of_line {
                 curves.extend(fine(along, place, &coordinate, group, size));
             }
@@ -86,7 +85,7 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
     let before = Before::of(data);
     if let Some(waits) = before.waits() {
         let changes = before.changes(data, deflections);
-        entries.extend(curve(SINCE_CHANGE, CHANGES, &scaled(&waits), &everything, PERCENT, SHARE, |i| {
+        entries.extend(curve(SINCE_CHANGE, CHANGES, &scaled(&waits), &everything, "percent", SHARE, |i| {
             changes[i]
         }));
     }
@@ -96,7 +95,7 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
             ALL_DEFLECTIONS,
             &scaled(&loads),
             &everything,
-            PERCENT,
+            "percent",
             SHARE,
             |i| deflections[i],
         ));
@@ -196,12 +195,19 @@ fn curve(
     place: &str,
     coordinate: &Coordinate,
     group: &[usize],
-    unit: f64,
+    suffix: &str,
     size: f64,
     amplitude: impl Fn(usize) -> f64,
 ) -> Option<Entry> {
     let sizes: Vec<f64> = (0..MOST_COLUMNS).map(|j| size / (1 + j) as f64).collect();
-    cosines(&format!("{}, {place}", along.name), (along, place), (coordinate, group), unit, &sizes, amplitude)
+    cosines(
+        &format!("{}, {place}", along.name),
+        (along, place),
+        (coordinate, group),
+        suffix,
+        &sizes,
+        amplitude,
+    )
 }
 
 /// A curve in time that swings; nothing where too few times are known to see that.
@@ -211,7 +217,7 @@ fn fine(along: Along, place: &str, coordinate: &Coordinate, group: &[usize], siz
     let even = (FINE / 2) as f64;
     let sizes: Vec<f64> = (0..FINE).map(|j| size / (1.0 + j as f64 / even).powi(2)).collect();
     let label = format!("{}, in swings, {place}", along.name);
-    cosines(&label, (along, place), (coordinate, group), UM, &sizes, |_| 1.0)
+    cosines(&label, (along, place), (coordinate, group), "um", &sizes, |_| 1.0)
 }
 
 /// Σ_j a_j·cos(π j x), a_j of these sizes; of fewer values than columns as many columns.
@@ -219,23 +225,16 @@ fn cosines(
     label: &str,
     (along, place): (Along, &str),
     (coordinate, group): (&Coordinate, &[usize]),
-    unit: f64,
+    suffix: &str,
     sizes: &[f64],
     amplitude: impl Fn(usize) -> f64,
 ) -> Option<Entry> {
     let known: Vec<(usize, f64)> = group.iter().filter_map(|&i| Some((i, coordinate[i]?))).collect();
     let different = numbered(known.iter().map(|(_, x)| x.to_bits())).into_iter().max()? + 1;
     let own: Arc<[usize]> = known.iter().map(|(i, _)| *i).collect();
-    let suffix = if unit == PERCENT { "percent" } else { "um" };
     let (parameters, actions) = (0..different.min(sizes.len()))
         .map(|j| {
-            let parameter = Parameter {
-                name: format!("cosine_{j}_{suffix}"),
-                unit,
-                neutral: 0.0,
-                size: sizes[j],
-                bounds: (f64::NEG_INFINITY, f64::INFINITY),
-            };
+            let parameter = parameter(&format!("cosine_{j}_{suffix}"), 0.0, sizes[j], UNBOUNDED);
             let weight = |&(i, x): &(usize, f64)| amplitude(i) * (PI * j as f64 * x).cos();
             let values = known.iter().map(weight).collect();
             (parameter, Action::Shift(Weights { data: Arc::clone(&own), values }))
@@ -260,7 +259,9 @@ fn along_the_load(data: &[Datum]) -> Option<Entry> {
     let largest = along.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
     let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
     let sign = |i: usize| if data[i].drive() < 0.0 { -1.0 } else { 1.0 };
-    (axes > 1).then(|| curve(LOAD, "readings along the load", &coordinate, &along, UM, size, sign)).flatten()
+    (axes > 1)
+        .then(|| curve(LOAD, "readings along the load", &coordinate, &along, "um", size, sign))
+        .flatten()
 }
 
 /// A slope of its own for every line: a rod whose compliance differs from the model in a way that
@@ -271,13 +272,7 @@ fn slopes(data: &[Datum], deflections: &[f64], lines: &[(String, Vec<usize>)]) -
     let steepest = (0..data.len()).map(|i| slope(&i)).fold(0.0, f64::max);
     let of_line = |(place, line): &(String, Vec<usize>)| {
         let size = SLOPE.0 * line.iter().map(slope).fold(0.0, f64::max) + SLOPE.1 * steepest;
-        let parameter = Parameter {
-            name: format!("{place}_um_per_n"),
-            unit: UM,
-            neutral: 0.0,
-            size,
-            bounds: (f64::NEG_INFINITY, f64::INFINITY),
-        };
+        let parameter = parameter(&format!("{place}_um_per_n"), 0.0, size, UNBOUNDED);
         (parameter, Action::Shift(line.iter().map(|&i| (i, data[i].drive())).collect()))
     };
     let (parameters, actions) = lines.iter().map(of_line).unzip();

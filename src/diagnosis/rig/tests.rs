@@ -131,7 +131,7 @@ fn neutral_values_change_nothing_and_typical_ones_something() {
             let change = model.response(&[Term { candidate: index, values }]);
             assert!(change.amax() > 0.0 && change.iter().all(|c| c.is_finite()), "{candidate:?}");
             for p in &candidate.parameters {
-                assert!(p.size > 0.0 && p.size.is_finite() && p.unit > 0.0, "{candidate:?}");
+                assert!(p.size > 0.0 && p.size.is_finite() && p.unit.si > 0.0, "{candidate:?}");
                 assert!(p.bounds.0 <= p.neutral && p.neutral + p.size <= p.bounds.1, "{candidate:?}");
             }
         }

@@ -25,8 +25,8 @@ pub struct Effect {
     pub formula: &'static str,
     /// Its usual size (standard deviation of the prior) and the source of that number.
     pub prior: &'static str,
-    /// Its numbers: name with unit, and meaning.
-    pub parameters: &'static [(&'static str, &'static str)],
+    /// Its numbers: names with their units, three of a vector, and what they mean.
+    pub parameters: &'static [(&'static [&'static str], &'static str)],
     /// What a recording must have so that it can be seen.
     pub needs: &'static str,
     /// What it is called where its numbers are said: `friction in the slide`.

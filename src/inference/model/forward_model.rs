@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::inference::columns::stored_column::StoredColumn;
 use crate::inference::{Description, Effect, Estimate, Finding, FindingPart, Hypothesis, Location, Term};
+use crate::units::Unit;
 
 /// Step of a derivative, relative to the size of a parameter.
 pub const DERIVATIVE_STEP: f64 = 1e-4;
@@ -36,8 +37,8 @@ pub struct Candidate {
 pub struct Parameter {
     /// Name with its unit, for example `force_n`.
     pub name: String,
-    /// What one unit of the name is in SI.
-    pub unit: f64,
+    /// The unit of the name.
+    pub unit: Unit,
     /// Value at which nothing happens, SI.
     pub neutral: f64,
     /// Size at which the effect is typically met: standard deviation of its prior about the neutral

@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::inference::{
     Description, Effect, Hypothesis, Kind, Location, Proposal, Quantity, Term, WrittenTo,
 };
+use crate::units::Unit;
 
 /// An effect that was adopted: one term of the hypothesis, or several that are reported as one.
 #[derive(Debug, Clone)]
@@ -70,8 +71,8 @@ pub struct FindingPart {
 pub struct Estimate {
     /// Name with its unit, for example `force_n`.
     pub name: String,
-    /// What one unit of the name is in SI.
-    pub unit: f64,
+    /// The unit of the name.
+    pub unit: Unit,
     /// Value.
     pub value: f64,
     /// Lower end of the interval.
@@ -114,10 +115,22 @@ impl Rival {
 }
 
 impl Estimate {
+    /// Of this name, which ends with its unit; the numbers are SI.
+    pub fn new(name: impl Into<String>, value: f64, low: f64, high: f64) -> Estimate {
+        let name = name.into();
+        Estimate { unit: Unit::of_key(&name), name, value, low, high }
+    }
+
+    /// Of this name, whose numbers stay as they stand in a file: in the unit of the name.
+    pub fn as_written(name: impl Into<String>, value: f64, low: f64, high: f64) -> Estimate {
+        let new = Estimate::new(name, value, low, high);
+        Estimate { unit: new.unit.as_written(), ..new }
+    }
+
     /// In the unit of its name.
     pub fn quantity(&self) -> Quantity {
-        let unit = self.unit;
-        Quantity { value: self.value / unit, low: self.low / unit, high: self.high / unit }
+        let si = self.unit.si;
+        Quantity { value: self.value / si, low: self.low / si, high: self.high / si }
     }
 }
 

@@ -11,7 +11,6 @@ use super::{
 };
 use crate::calibration::campaign::Targets;
 use crate::inference::{Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
-use crate::units::MM;
 
 /// Error of a contact force, N.
 const CONTACT: f64 = 0.3;
@@ -27,9 +26,9 @@ pub static CONTACT_FORCE_VARIATION: CalibrationEffect = CalibrationEffect {
         formula: "R·C^F·Rᵀ·F + yield(tip, F): F in the device frame of the clamp",
         prior: "0.3 N: sensor springs are stated to 10 or 20 % of 2 N",
         parameters: &[
-            ("x_n", "force beyond the stated one along x of the device frame"),
-            ("y_n", "force beyond the stated one along y of the device frame"),
-            ("z_n", "force beyond the stated one along z of the device frame"),
+            (&["x_n"], "force beyond the stated one along x of the device frame"),
+            (&["y_n"], "force beyond the stated one along y of the device frame"),
+            (&["z_n"], "force beyond the stated one along z of the device frame"),
         ],
         needs: "clamps, and a rod or joints of known compliance",
         cause: "a contact force that differs from the stated one",
@@ -60,7 +59,7 @@ fn contacts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
                 let group = context.recording.rows[row].group;
                 is_there(group).then(|| groups[group].device.rotation.column(axis).into())
             };
-            (linear(name, 1.0, CONTACT), context.column(|row, there| pushed(context, there, push(row))))
+            (linear(name, CONTACT), context.column(|row, there| pushed(context, there, push(row))))
         };
         let parameters = ["x_n", "y_n", "z_n"].into_iter().enumerate().map(along).collect();
         Entry::new(&CONTACT_FORCE_VARIATION.effect, location, parameters)
@@ -101,7 +100,7 @@ pub static CONTACT_SPRING: CalibrationEffect = CalibrationEffect {
         formula: "R·C^F·Rᵀ·k·u + yield(tip, k·u): u the recorded displacement in the device frame, so that \
                   the force is F₀ + k·u; k < 0 pushes back",
         prior: "0.1 N/mm: springs of plunger gauges have 0.05 to 0.3",
-        parameters: &[("n_per_mm", "k: change of the force per displacement")],
+        parameters: &[(&["n_per_mm"], "k: change of the force per displacement")],
         needs: "clamps, displacements that differ by more than a tenth of a millimetre, and a rod or joints \
                 of known compliance",
         cause: "springs of the device, whose force changes with the displacement",
@@ -134,7 +133,7 @@ fn springs(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     at_clamps(context, |location, is_there| {
         let push = |row: usize| is_there(context.recording.rows[row].group).then(|| displacement(row));
         let column = context.column(|row, there| pushed(context, there, push(row)));
-        single(&CONTACT_SPRING, location, linear("n_per_mm", 1.0 / MM, RATE), column)
+        single(&CONTACT_SPRING, location, linear("n_per_mm", RATE), column)
     })
 }
 

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::calibration::campaign::{Campaign, GroupName};
 use crate::inference::{Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
-use crate::units::{UM, URAD};
+use crate::units::UM;
 
 /// Error of a clamp's place, m and rad.
 const MISPLACED: (f64, f64) = (100.0 * UM, 0.5e-3);
@@ -34,8 +34,8 @@ pub static CLAMP_POSE: CalibrationEffect = CalibrationEffect {
                   it is",
         prior: "100 µm and 0.5 mrad: a fixture that was measured by a hand-held gauge",
         parameters: &[
-            ("dx_um, dy_um, dz_um", "displacement of the clamp in {W}"),
-            ("rx_urad, ry_urad, rz_urad", "its rotation about the axes of {W}"),
+            (&["dx_um", "dy_um", "dz_um"], "displacement of the clamp in {W}"),
+            (&["rx_urad", "ry_urad", "rz_urad"], "its rotation about the axes of {W}"),
         ],
         needs: "at least two clamps",
         cause: "a wrong clamp position in the campaign",
@@ -69,10 +69,10 @@ fn clamps(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
                 false => Vector3::zeros(),
             })
         };
-        let mut six = three(&SHIFT, UM, MISPLACED.0, |axis| at(&|_| unit(axis)));
+        let mut six = three(&SHIFT, MISPLACED.0, |axis| at(&|_| unit(axis)));
         let centre = groups[k].device.origin;
         let turned = |axis: usize| at(&|there: &Configuration| unit(axis).cross(&(there.tip - centre)));
-        six.extend(three(&TURN, URAD, MISPLACED.1, turned));
+        six.extend(three(&TURN, MISPLACED.1, turned));
         Entry::new(&CLAMP_POSE.effect, Location::Named(groups[k].name.to_string()), six)
     };
     (0..groups.len()).map(of_clamp).collect()
@@ -86,7 +86,7 @@ pub static CLAMP_SHIFT: CalibrationEffect = CalibrationEffect {
         summary: "a clamp moved after one pose",
         formula: "−t from some row on: t is how far the clamp moved",
         prior: "0.5 mm: millimetres when one sees a knock, tenths when one does not",
-        parameters: &[("dx_um, dy_um, dz_um", "displacement of the clamp in {W}")],
+        parameters: &[(&["dx_um", "dy_um", "dz_um"], "displacement of the clamp in {W}")],
         needs: "four poses in a clamp",
         cause: "a knock or a slip of the clamp",
         cause_at: |location| format!("a shift ({location})"),
@@ -116,8 +116,8 @@ pub static SOCKET_SHIFT: CalibrationEffect = CalibrationEffect {
                   also turns by φ about the middle of its points",
         prior: "0.5 mm, and 3 mrad for a plate: 0.5 mm over its width",
         parameters: &[
-            ("dx_um, dy_um, dz_um", "displacement of the socket or plate in {W}"),
-            ("rx_urad, ry_urad, rz_urad", "rotation of a plate about the axes of {W}"),
+            (&["dx_um", "dy_um", "dz_um"], "displacement of the socket or plate in {W}"),
+            (&["rx_urad", "ry_urad", "rz_urad"], "rotation of a plate about the axes of {W}"),
         ],
         needs: "four poses in a socket, or on a plate",
         cause: "a knock or a slip of the socket",
@@ -232,10 +232,10 @@ fn moved(
                 }
             })
         };
-        let mut columns = three(&SHIFT, UM, KNOCK.0, |axis| on(&|_| unit(axis)));
+        let mut columns = three(&SHIFT, KNOCK.0, |axis| on(&|_| unit(axis)));
         if turns {
             let turned = |axis: usize| on(&|there: &Configuration| unit(axis).cross(&(there.tip - middle)));
-            columns.extend(three(&TURN, URAD, PLATE, turned));
+            columns.extend(three(&TURN, PLATE, turned));
         }
         let row = rows[before - 1];
         // poses in sockets often have no names of their own

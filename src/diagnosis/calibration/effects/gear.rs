@@ -28,7 +28,7 @@ use crate::inference::{
     Candidate, Effect, Estimate, Finding, FindingPart, JointVariable, Kind, NotTestable, Reported, WrittenTo,
 };
 use crate::robot;
-use crate::units::{URAD, significant};
+use crate::units::significant;
 
 /// Last frequency of the scan, cycles per revolution, and its widest step.
 const SCAN: (f64, f64) = (40.0, 0.5);
@@ -55,16 +55,16 @@ pub static TRANSMISSION_ERROR: CalibrationEffect = CalibrationEffect {
                   40 cycles per revolution, or a smooth curve of one of five length scales",
         prior: "150 µrad rms: a UR5 shows 60 to 110 µrad, a UR10 220 to 400",
         parameters: &[
-            ("cycles_per_rev", "frequency of the strongest wave"),
-            ("amplitude_urad", "its amplitude; of a curve, of a wave of the same rms"),
-            ("second_cycles_per_rev", "frequency of the next wave"),
-            ("second_amplitude_urad", "its amplitude"),
-            ("third_cycles_per_rev", "frequency of the third wave"),
-            ("third_amplitude_urad", "its amplitude"),
-            ("fourth_cycles_per_rev", "frequency of the fourth wave"),
-            ("fourth_amplitude_urad", "its amplitude"),
-            ("recorded_rms_urad", "root mean square of the whole error over the recorded angles"),
-            ("recorded_half_peak_to_peak_urad", "half the way from its lowest value to its highest"),
+            (&["cycles_per_rev"], "frequency of the strongest wave"),
+            (&["amplitude_urad"], "its amplitude; of a curve, of a wave of the same rms"),
+            (&["second_cycles_per_rev"], "frequency of the next wave"),
+            (&["second_amplitude_urad"], "its amplitude"),
+            (&["third_cycles_per_rev"], "frequency of the third wave"),
+            (&["third_amplitude_urad"], "its amplitude"),
+            (&["fourth_cycles_per_rev"], "frequency of the fourth wave"),
+            (&["fourth_amplitude_urad"], "its amplitude"),
+            (&["recorded_rms_urad"], "root mean square of the whole error over the recorded angles"),
+            (&["recorded_half_peak_to_peak_urad"], "half the way from its lowest value to its highest"),
         ],
         needs: "a joint that turns",
         cause: "an error of its gear or encoder",
@@ -142,7 +142,7 @@ fn wave(context: &Context, j: usize, cycles: f64, half_step: f64) -> Entry {
 }
 
 fn terms(context: &Context, gear: Gear, form: String, names: &[&str]) -> Entry {
-    let parameter = |(k, name): (usize, &&str)| (linear(*name, URAD, JOINT_ANGLE), turned(context, &gear, k));
+    let parameter = |(k, name): (usize, &&str)| (linear(*name, JOINT_ANGLE), turned(context, &gear, k));
     let parameters = names.iter().enumerate().map(parameter).collect();
     let location = joint_by(gear.joint(), form);
     Entry::new(&TRANSMISSION_ERROR.effect, location, parameters).by(Law::Gear(gear))
@@ -166,7 +166,7 @@ fn curve(context: &Context, j: usize, cycles: f64) -> Option<Entry> {
     let sizes = cosines.sizes.clone();
     let gear = Gear::Curve { joint: j, cosines };
     let parameters = sizes.iter().enumerate().skip(1).map(|(k, size)| {
-        let parameter = linear(format!("cosine_{k}_urad"), URAD, JOINT_ANGLE * size);
+        let parameter = linear(format!("cosine_{k}_urad"), JOINT_ANGLE * size);
         (parameter, turned(context, &gear, k - 1))
     });
     let location = joint_by(j, format!("a smooth curve, scale {:.2}°", scale.to_degrees()));

@@ -19,7 +19,6 @@ use crate::inference::{
     Effect, Finding, JointVariable, Kind, Location, NotTestable, Parameter, Part, Reported, WrittenTo,
 };
 use crate::robot;
-use crate::units::{URAD, URAD_PER_NM};
 
 /// Angle by which a joint or a link deflects under its largest torque beyond what is modelled, rad:
 /// a tenth to a half of what industrial drives deflect by altogether (0.5 mrad).
@@ -50,9 +49,9 @@ pub static JOINT_COMPLIANCE: CalibrationEffect = CalibrationEffect {
         prior: "200 µrad at the largest torque: a tenth to a half of the whole deflection of \
                 industrial drives (0.5 mrad)",
         parameters: &[
-            ("compliance_urad_per_nm", "angle per torque, beyond the model"),
+            (&["compliance_urad_per_nm"], "angle per torque, beyond the model"),
             (
-                "joint_N_urad_per_m, flange_urad_per_m",
+                &["joint_N_urad_per_m", "flange_urad_per_m"],
                 "angle per metre of horizontal lever, by an \
                 unknown weight at that frame",
             ),
@@ -80,7 +79,7 @@ fn compliances(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
         return joints.filter_map(|j| compliance_without_masses(context, j)).collect();
     }
     let of_joint = |(j, largest): (usize, f64)| {
-        let compliance = linear("compliance_urad_per_nm", URAD_PER_NM, DEFLECTION / largest);
+        let compliance = linear("compliance_urad_per_nm", DEFLECTION / largest);
         single(&JOINT_COMPLIANCE, joint(j), compliance, context.turn(j, |_, there| there.torque[j]))
     };
     loaded.into_iter().map(of_joint).collect()
@@ -110,7 +109,7 @@ fn compliance_without_masses(context: &Context, j: usize) -> Option<Entry> {
             let largest = context.largest(arm);
             let name = frame.map_or("flange_urad_per_m".into(), |k| format!("joint_{}_urad_per_m", k + 1));
             let column = context.turn(j, |_, there| arm(there));
-            let mut deflection = linear(name, URAD, DEFLECTION / largest.max(ONE_POINT));
+            let mut deflection = linear(name, DEFLECTION / largest.max(ONE_POINT));
             // drives deflect with their torque, never against it
             deflection.bounds.0 = 0.0;
             (largest > ONE_POINT).then_some((frame, (deflection, column)))
@@ -171,8 +170,8 @@ pub static JOINT_NONLINEAR_STIFFNESS: CalibrationEffect = CalibrationEffect {
         formula: "Jⱼ·k₂·τⱼ|τⱼ| or Jⱼ·k₃·τⱼ³",
         prior: "200 µrad at the largest torque, as joint_compliance",
         parameters: &[
-            ("urad_per_nm2", "angle per square of the torque"),
-            ("urad_per_nm3", "angle per third power of the torque"),
+            (&["urad_per_nm2"], "angle per square of the torque"),
+            (&["urad_per_nm3"], "angle per third power of the torque"),
         ],
         needs: "masses in the robot file, and a joint that they load",
         cause: "a stiffness that depends on the load",
@@ -197,8 +196,8 @@ fn nonlinear(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     }
     let of_joint = |(j, largest): (usize, f64)| {
         let turn = |angle: fn(f64) -> f64| context.turn(j, move |_, there| angle(there.torque[j]));
-        let quadratic = linear("urad_per_nm2", URAD, DEFLECTION / largest.powi(2));
-        let cubic = linear("urad_per_nm3", URAD, DEFLECTION / largest.powi(3));
+        let quadratic = linear("urad_per_nm2", DEFLECTION / largest.powi(2));
+        let cubic = linear("urad_per_nm3", DEFLECTION / largest.powi(3));
         let square = turn(|torque| torque * torque.abs());
         let cube = turn(|torque| torque.powi(3));
         [
@@ -235,7 +234,7 @@ pub static LINK_FLEXIBILITY: CalibrationEffect = CalibrationEffect {
         formula: "(k·M⊥) × (tip − oⱼ): M⊥ is the moment of all beyond the joint, without what acts \
                   about its axis",
         prior: "200 µrad at the largest moment, as joint_compliance",
-        parameters: &[("bending_urad_per_nm", "angle per moment")],
+        parameters: &[(&["bending_urad_per_nm"], "angle per moment")],
         needs: "masses in the robot file, and a joint that they load",
         cause: "a link that bends",
         cause_at: |location| format!("bending of the link before {location}"),
@@ -269,7 +268,7 @@ fn link(context: &Context, j: usize) -> Option<Entry> {
     let column = context
         .column(|_, there| across(&there.moment[j], &there.axis[j]).cross(&(there.tip - there.origin[j])));
     let size = DEFLECTION / largest.max(f64::MIN_POSITIVE);
-    let bending = linear("bending_urad_per_nm", URAD_PER_NM, size);
+    let bending = linear("bending_urad_per_nm", size);
     (largest > 0.0).then(|| single(&LINK_FLEXIBILITY, joint(j), bending, column))
 }
 
@@ -281,7 +280,7 @@ pub static GRAVITY_TILT: CalibrationEffect = CalibrationEffect {
         summary: "the base tilts under the arm's weight",
         formula: "φ × (tip − base): φ = k·(moment at the base, its horizontal part)",
         prior: "200 µrad at the largest moment, as joint_compliance",
-        parameters: &[("tilt_urad_per_nm", "angle per moment")],
+        parameters: &[(&["tilt_urad_per_nm"], "angle per moment")],
         needs: "masses in the robot file",
         cause: "a compliant base",
         cause_at: |_| "a base that tilts under the arm's weight".into(),
@@ -317,6 +316,6 @@ fn tilt(context: &Context) -> Option<Entry> {
     let largest = context.largest(|there| moment(there).norm());
     let column = context.column(|_, there| moment(there).cross(&(there.tip - there.origin[0])));
     let size = DEFLECTION / largest.max(f64::MIN_POSITIVE);
-    let tilting = linear("tilt_urad_per_nm", URAD_PER_NM, size);
+    let tilting = linear("tilt_urad_per_nm", size);
     (largest > 0.0).then(|| single(&GRAVITY_TILT, Location::Part(Part::Base), tilting, column))
 }

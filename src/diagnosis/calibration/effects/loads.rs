@@ -16,7 +16,7 @@ use super::{
 use crate::inference::{
     Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Part, Reported, WrittenTo,
 };
-use crate::units::{DEG, GRAM};
+use crate::units::DEG;
 
 /// Share by which a rod is softer than its model.
 const SOFTNESS: f64 = 0.27;
@@ -37,7 +37,7 @@ pub static ROD_STIFFNESS: CalibrationEffect = CalibrationEffect {
                   compensated, Δx the model's deflection under all loads or under one of them",
         prior: "27 % of deflection: 1 − 1/r is 0.27 rms over the r_rod of the paper's six rods; all \
                 of it where the rod was assumed rigid",
-        parameters: &[("factor", "s: stiffness over that of the model")],
+        parameters: &[(&["factor"], "s: stiffness over that of the model")],
         needs: "a rod in the campaign",
         cause: "a rod stiffness that differs from its model",
         cause_at: |_| "a rod of another stiffness".into(),
@@ -63,7 +63,7 @@ fn rods(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         return Vec::new();
     }
     let under = |load: RodLoad| {
-        let mut factor = linear("factor", 1.0, SOFTNESS);
+        let mut factor = linear("factor", SOFTNESS);
         factor.neutral = context.accounted;
         // a rod that was assumed rigid bends by all of its model
         factor.size = factor.size.max(1.0 - context.accounted);
@@ -143,7 +143,7 @@ pub static TIP_MASS: CalibrationEffect = CalibrationEffect {
         summary: "a mass at the tip that the files do not state",
         formula: "R·C^F·Rᵀ·(m·g) + yield(tip, m·g)",
         prior: "50 g: the paper's ball and holder have 55 g",
-        parameters: &[("mass_g", "mass beyond the stated one")],
+        parameters: &[(&["mass_g"], "mass beyond the stated one")],
         needs: "a rod or joints of known compliance",
         cause: "a mass that the files do not state",
         cause_at: |_| "a mass at the tip".into(),
@@ -166,7 +166,7 @@ fn tip_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         return Vec::new();
     }
     let column = context.column(|_, there| pulled(context, there, &there.gravity));
-    let mut mass = linear("mass_g", GRAM, FORGOTTEN_AT_TIP);
+    let mut mass = linear("mass_g", FORGOTTEN_AT_TIP);
     // no less can hang there than nothing
     mass.bounds.0 = -context.modelled_mass.0;
     vec![single(&TIP_MASS, Location::Part(Part::Tip), mass, column)]
@@ -180,7 +180,7 @@ pub static PAYLOAD_MASS: CalibrationEffect = CalibrationEffect {
         summary: "a mass at the flange that the files do not state",
         formula: "yield(flange, m·g)",
         prior: "0.5 kg: an adapter, a cable",
-        parameters: &[("mass_kg", "mass beyond the stated one")],
+        parameters: &[(&["mass_kg"], "mass beyond the stated one")],
         needs: "joints of known compliance",
         cause: "a mass that the files do not state",
         cause_at: |_| "a mass on the flange".into(),
@@ -203,7 +203,7 @@ fn payload_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry>
         return Vec::new();
     }
     let column = context.column(|_, there| there.joint_deflection(&there.flange.origin, &there.gravity));
-    let mut mass = linear("mass_kg", 1.0, FORGOTTEN_AT_FLANGE);
+    let mut mass = linear("mass_kg", FORGOTTEN_AT_FLANGE);
     mass.bounds.0 = -context.modelled_mass.1;
     vec![single(&PAYLOAD_MASS, Location::Part(Part::Flange), mass, column)]
 }
@@ -218,8 +218,8 @@ pub static GRAVITY_DIRECTION: CalibrationEffect = CalibrationEffect {
                   moment of all that hangs beyond joint j",
         prior: "0.5°: a foot that was set up without a level",
         parameters: &[
-            ("roll_deg", "rotation of gravity about x of the base"),
-            ("pitch_deg", "rotation of gravity about y of the base"),
+            (&["roll_deg"], "rotation of gravity about x of the base"),
+            (&["pitch_deg"], "rotation of gravity about y of the base"),
         ],
         needs: "a rod, or masses in the robot file and joints of known compliance",
         cause: "a base that does not stand level",
@@ -253,7 +253,7 @@ fn levels(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
             let turned = there.base.rotation.column(axis).cross(&there.gravity);
             there.in_world(&context.weight_compliance) * turned + there.joint_deflection_by_weight(&turned)
         });
-        (linear(name, DEG, LEVEL), column)
+        (linear(name, LEVEL), column)
     };
     let parameters = ["roll_deg", "pitch_deg"].into_iter().enumerate().map(about).collect();
     vec![Entry::new(&GRAVITY_DIRECTION.effect, Location::Part(Part::Base), parameters)]

@@ -18,7 +18,7 @@ use crate::diagnosis::calibration::model::vector::{self, Length};
 use crate::inference::{
     Candidate, Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Reported, WrittenTo,
 };
-use crate::units::{DEG, MM, UM, URAD};
+use crate::units::{MM, UM};
 
 /// Distance of the ball from the flange below which no rotation moves it, m.
 const LEAST_LEVER: f64 = 10.0 * MM;
@@ -32,8 +32,8 @@ pub static BASE_SHIFT: CalibrationEffect = CalibrationEffect {
         formula: "t + φ × (ball − base) from some row on",
         prior: "0.5 mm and 0.5 mrad: millimetres when one sees a knock, tenths when one does not",
         parameters: &[
-            ("dx_um, dy_um, dz_um", "displacement of the base in {W}"),
-            ("rx_urad, ry_urad, rz_urad", "its rotation about the axes of {W}"),
+            (&["dx_um", "dy_um", "dz_um"], "displacement of the base in {W}"),
+            (&["rx_urad", "ry_urad", "rz_urad"], "its rotation about the axes of {W}"),
         ],
         needs: "measured points (the points of sockets are unknown: there a moved plate stands for it)",
         cause: "a slip of the robot on its base",
@@ -72,9 +72,9 @@ fn base_moved(context: &Context, rows: Range<usize>, location: Location) -> Entr
     let on = |displacement: &dyn Fn(&Configuration) -> Vector3<f64>| {
         context.part(rows.clone(), |_, there| displacement(there))
     };
-    let mut six = three(&SHIFT, UM, KNOCK.0, |axis| on(&|_| unit(axis)));
+    let mut six = three(&SHIFT, KNOCK.0, |axis| on(&|_| unit(axis)));
     let turned = |axis: usize| on(&|there: &Configuration| unit(axis).cross(&(there.tip - there.origin[0])));
-    six.extend(three(&TURN, URAD, KNOCK.1, turned));
+    six.extend(three(&TURN, KNOCK.1, turned));
     Entry::new(&BASE_SHIFT.effect, location, six)
 }
 
@@ -94,8 +94,8 @@ pub static TOOL_SHIFT: CalibrationEffect = CalibrationEffect {
                   alone does not show how much of it was a rotation φ",
         prior: "0.5 mm: millimetres when one sees a knock, tenths when one does not",
         parameters: &[
-            ("dx_um, dy_um, dz_um", "displacement of the ball in {T}"),
-            ("rotation_deg", "the least rotation about the flange that moves the ball so"),
+            (&["dx_um", "dy_um", "dz_um"], "displacement of the ball in {T}"),
+            (&["rotation_deg"], "the least rotation about the flange that moves the ball so"),
         ],
         needs: "poses in the order of recording that hold the tool in different directions",
         cause: "a slip of the rod or tool in its mount",
@@ -127,7 +127,7 @@ fn tools(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
 fn tool_moved(context: &Context, rows: Range<usize>, location: Location) -> Entry {
     let along =
         |axis: usize| context.part(rows.clone(), |_, there| there.flange.rotation.column(axis).into_owned());
-    Entry::new(&TOOL_SHIFT.effect, location, three(&SHIFT, UM, KNOCK.0, along))
+    Entry::new(&TOOL_SHIFT.effect, location, three(&SHIFT, KNOCK.0, along))
 }
 
 /// The tool stays where it slipped to.
@@ -150,13 +150,8 @@ fn slipped(model: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
     // the gradient of its length has nothing along the lever
     let turned = Length { gradient: angle.gradient / lever.norm(), ..angle };
     let half = turned.half_interval(part);
-    estimates.push(Estimate {
-        name: "rotation_deg".into(),
-        unit: DEG,
-        value: turned.value,
-        low: (turned.value - half).max(0.0),
-        high: turned.value + half,
-    });
+    let (value, low) = (turned.value, (turned.value - half).max(0.0));
+    estimates.push(Estimate::new("rotation_deg", value, low, turned.value + half));
     estimates
 }
 

@@ -73,7 +73,7 @@ fn positions(draft: &Draft) -> Vec<Silent> {
     } else {
         for axis in still {
             let value = shown(axis);
-            let estimate = Estimate { name: "mm".into(), unit: 1.0, value, low: value, high: value };
+            let estimate = Estimate::as_written("mm", value, value, value);
             let what = format!("it is {} mm in all rows", significant(value, 4));
             all.push(stuck(Key::new(names[axis]), vec![estimate], names[axis], what, draft.len()));
         }
@@ -100,7 +100,7 @@ fn joints(campaign: &Campaign, draft: &Draft) -> Vec<Silent> {
                 Motion::Prismatic => (MM, " mm", "mm"),
             };
             let value = columns[a][0] / unit;
-            let estimate = Estimate { name: key.into(), unit: 1.0, value, low: value, high: value };
+            let estimate = Estimate::as_written(key, value, value, value);
             let what =
                 format!("it is {}{symbol} in all rows, and the poses do not fit", significant(value, 4));
             let still = stuck(Key::new(name(a)), vec![estimate], &name(a), what, draft.len());

@@ -67,13 +67,8 @@ impl Mended {
                 Distance { value: stated.value * factor, ..stated }
             }
             None => {
-                let estimate = Estimate {
-                    name: "mm".into(),
-                    unit: 1.0,
-                    value: value / MM,
-                    low: (value - half) / MM,
-                    high: (value + half) / MM,
-                };
+                let (low, high) = ((value - half) / MM, (value + half) / MM);
+                let estimate = Estimate::as_written("mm", value / MM, low, high);
                 let cure = format!("Write {digits} for {number} as {KEY}");
                 self.add(&DISTANCE_MISTAKE, key, vec![estimate], (&cure, &there), log_odds);
                 Distance { value, sd, ..stated }

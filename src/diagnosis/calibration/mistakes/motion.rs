@@ -8,7 +8,6 @@ use crate::calibration::campaign::Recording;
 use crate::diagnosis::calibration::effects::mounting::BASE_SHIFT;
 use crate::inference::{Estimate, Finding, Location};
 use crate::spatial::Pose;
-use crate::units::{UM, URAD};
 
 /// Half of a 95 % interval in standard deviations.
 const COVERAGE: f64 = 1.96;
@@ -57,10 +56,7 @@ pub fn motion_estimates(from: &Pose, to: &Pose) -> Vec<Estimate> {
     let turn = Rotation3::from_matrix_unchecked(to.rotation * from.rotation.transpose()).scaled_axis();
     let names = ["dx_um", "dy_um", "dz_um", "rx_urad", "ry_urad", "rz_urad"];
     let values = [way.x, way.y, way.z, turn.x, turn.y, turn.z];
-    let estimate = |(k, name): (usize, &&str)| {
-        let unit = if k < 3 { UM } else { URAD };
-        Estimate { name: (*name).into(), unit, value: values[k], low: values[k], high: values[k] }
-    };
+    let estimate = |(k, name): (usize, &&str)| Estimate::new(*name, values[k], values[k], values[k]);
     names.iter().enumerate().map(estimate).collect()
 }
 

@@ -82,7 +82,7 @@ struct List<'a> {
 
 /// An exact number.
 pub(super) fn exact(name: &str, value: f64) -> Vec<Estimate> {
-    vec![Estimate { name: name.into(), unit: 1.0, value, low: value, high: value }]
+    vec![Estimate::as_written(name, value, value, value)]
 }
 
 impl List<'_> {

@@ -26,7 +26,7 @@ use super::typed::{decimals, tidy};
 use crate::calibration::campaign::Recording;
 use crate::diagnosis::calibration::effects::events::OUTLIER;
 use crate::inference::{Effect, Estimate, Key};
-use crate::units::{MM, UM, significant};
+use crate::units::{MM, significant};
 
 /// Rows that are far out and looked at; the farthest first.
 const MOST_ROWS: usize = 40;
@@ -196,13 +196,7 @@ fn left_out(draft: &Draft, at: usize, length: f64, scale: f64, recording: &Recor
         change: DraftChange::Without(vec![row]),
         effect: &OUTLIER.effect,
         location: Key::new(&pose),
-        estimates: vec![Estimate {
-            name: "off_um".into(),
-            unit: UM,
-            value: length,
-            low: length,
-            high: length,
-        }],
+        estimates: vec![Estimate::new("off_um", length, length, length)],
         cure: format!("Leave out {pose}, or measure it anew"),
         why: format!("its angles and its position are {} mm apart", significant(length / MM, 3)),
         log_odds: disturbance(length, scale),

@@ -4,6 +4,7 @@ use nalgebra::DVector;
 
 use super::law::Law;
 use crate::inference::{Candidate, Effect, Location, Parameter, Pattern, StoredColumn};
+use crate::units::Unit;
 
 /// ∂response/∂parameter: data from `first` on, m per unit of the parameter; zero elsewhere. Of a
 /// pattern, rows from `first` on, and what each of them counts.
@@ -84,7 +85,8 @@ impl Entry {
 }
 
 /// A parameter without effect at zero and without bounds.
-pub fn linear(name: impl Into<String>, unit: f64, size: f64) -> Parameter {
+pub fn linear(name: impl Into<String>, size: f64) -> Parameter {
+    let name = name.into();
     let bounds = (f64::NEG_INFINITY, f64::INFINITY);
-    Parameter { name: name.into(), unit, neutral: 0.0, size, bounds }
+    Parameter { unit: Unit::of_key(&name), name, neutral: 0.0, size, bounds }
 }

@@ -18,7 +18,6 @@ use nalgebra::{DMatrix, DVector};
 use super::cosines::Cosines;
 use super::vector::{Length, length, weighted_length};
 use crate::inference::{Estimate, FindingPart, rms};
-use crate::units::URAD;
 
 /// Step of the scan for a curve's strongest wave, cycles per revolution.
 const WAVE_STEP: f64 = 0.25;
@@ -123,8 +122,8 @@ impl Gear {
         let of_wave = |wave: Wave| {
             let half = wave.amplitude.half_interval(part);
             [
-                positive("cycles_per_rev", 1.0, wave.cycles, wave.half_cycles),
-                positive("amplitude_urad", URAD, wave.amplitude.value, half),
+                positive("cycles_per_rev", wave.cycles, wave.half_cycles),
+                positive("amplitude_urad", wave.amplitude.value, half),
             ]
         };
         waves.into_iter().flat_map(of_wave).collect()
@@ -142,7 +141,7 @@ impl Gear {
         }
         let names = ["cycles_per_rev", "second_cycles_per_rev"];
         let waves = self.waves(part, angles).into_iter().zip(names);
-        waves.map(|(wave, name)| positive(name, 1.0, wave.cycles, wave.half_cycles)).collect()
+        waves.map(|(wave, name)| positive(name, wave.cycles, wave.half_cycles)).collect()
     }
 
     /// The waves that a part of a finding is; of a curve the strongest one.
@@ -201,8 +200,8 @@ struct Wave {
 }
 
 /// A number that is never negative, with half of its 95 % interval, SI.
-fn positive(name: &str, unit: f64, value: f64, half: f64) -> Estimate {
-    Estimate { name: name.into(), unit, value, low: (value - half).max(0.0), high: value + half }
+fn positive(name: &str, value: f64, half: f64) -> Estimate {
+    Estimate::new(name, value, (value - half).max(0.0), value + half)
 }
 
 /// The whole error of a joint: the sum of all that was found of it, with what is known of it.
@@ -258,18 +257,14 @@ impl Curve {
         let half = |gradient: &DVector<f64>| {
             coverage_factor * gradient.dot(&(&self.covariance * gradient)).max(0.0).sqrt()
         };
-        let mut all = vec![positive(
-            "recorded_rms_urad",
-            URAD,
-            rms,
-            half(&(slope / (count * rms.max(f64::MIN_POSITIVE)))),
-        )];
+        let mut all =
+            vec![positive("recorded_rms_urad", rms, half(&(slope / (count * rms.max(f64::MIN_POSITIVE)))))];
         let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
         let ends = (0..angles.len()).min_by(by_value).zip((0..angles.len()).max_by(by_value));
         if let Some((low, high)) = ends {
             let gradient = (self.terms(angles[high]) - self.terms(angles[low])) * 0.5;
             let value = 0.5 * (values[high].max(0.0) - values[low].min(0.0));
-            all.push(positive("recorded_half_peak_to_peak_urad", URAD, value, half(&gradient)));
+            all.push(positive("recorded_half_peak_to_peak_urad", value, half(&gradient)));
         }
         all
     }

@@ -6,10 +6,6 @@ use std::fmt;
 
 use super::gear::Gear;
 use crate::inference::Part;
-use crate::units::{UM, URAD};
-
-/// Seconds in an hour.
-const HOUR: f64 = 3600.0;
 
 /// The law of a candidate.
 #[derive(Debug, Clone, PartialEq)]
@@ -162,30 +158,30 @@ impl Course {
         }
     }
 
-    /// Unit of a drift's parameters: at the end of their names, for people, and in SI.
-    pub fn unit(self) -> (&'static str, &'static str, f64) {
+    /// Unit of a drift's parameters: at the end of their names, and for people.
+    pub fn unit(self) -> (&'static str, &'static str) {
         match self {
-            Course::Order | Course::WarmUp(_) => ("um", "µm", UM),
-            Course::Temperature => ("um_per_k", "µm per kelvin", UM),
-            Course::Time => ("um_per_h", "µm per hour", UM / HOUR),
+            Course::Order | Course::WarmUp(_) => ("um", "µm"),
+            Course::Temperature => ("um_per_k", "µm per kelvin"),
+            Course::Time => ("um_per_h", "µm per hour"),
         }
     }
 
     /// The same of an angle.
-    pub fn angle_unit(self) -> (&'static str, &'static str, f64) {
+    pub fn angle_unit(self) -> (&'static str, &'static str) {
         match self {
-            Course::Order | Course::WarmUp(_) => ("urad", "µrad", URAD),
-            Course::Temperature => ("urad_per_k", "µrad per kelvin", URAD),
-            Course::Time => ("urad_per_h", "µrad per hour", URAD / HOUR),
+            Course::Order | Course::WarmUp(_) => ("urad", "µrad"),
+            Course::Temperature => ("urad_per_k", "µrad per kelvin"),
+            Course::Time => ("urad_per_h", "µrad per hour"),
         }
     }
 
     /// The same of lengths that grow by a share.
-    pub fn share_unit(self) -> (&'static str, &'static str, f64) {
+    pub fn share_unit(self) -> (&'static str, &'static str) {
         match self {
-            Course::Order | Course::WarmUp(_) => ("um_per_m", "µm/m", UM),
-            Course::Temperature => ("um_per_m_per_k", "µm/m per kelvin", UM),
-            Course::Time => ("um_per_m_per_h", "µm/m per hour", UM / HOUR),
+            Course::Order | Course::WarmUp(_) => ("um_per_m", "µm/m"),
+            Course::Temperature => ("um_per_m_per_k", "µm/m per kelvin"),
+            Course::Time => ("um_per_m_per_h", "µm/m per hour"),
         }
     }
 }

@@ -74,7 +74,7 @@ fn links_turn_and_joints_err_together() {
         (
             "unknown",
             "joint 4, twice per turn along its axis",
-            "along_um_cos_2",
+            "cos_2_along_um",
             Box::new(move |r, row, v| r.setup.links[3].d += v * (2.0 * recording.joints(row)[3]).cos()),
         ),
         (

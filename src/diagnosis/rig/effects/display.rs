@@ -8,7 +8,6 @@ use crate::diagnosis::rig::mechanics::action::Action;
 use crate::diagnosis::rig::mechanics::display::{Display, Follows};
 use crate::inference::{Candidate, Effect, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::spatial::Axis;
-use crate::units::UM;
 
 /// Play of a stylus, a lever or a dial as a share of the largest reading.
 const PLAY: f64 = 0.01;
@@ -33,7 +32,10 @@ pub static SENSOR_LAG: RigEffect = RigEffect {
         summary: "a display follows late: after its play, or read before it has settled",
         formula: "y ← min(max(y, u − p/2), u + p/2) along a run, p the whole play; or y = u − λ·(u − u′), u′ before",
         prior: "play of 1 % of the largest reading: dial gauges reverse to 1 to 5 µm; or λ 3 %",
-        parameters: &[("play_um", "whole play"), ("fraction", "share of each change that is not shown yet")],
+        parameters: &[
+            (&["play_um"], "whole play"),
+            (&["fraction"], "share of each change that is not shown yet"),
+        ],
         needs: "a rod file; loads that go up and down (column `phase`)",
         cause: "a display that follows late",
         cause_at: |location| format!("a display that follows late ({location})"),
@@ -80,8 +82,8 @@ fn displays(context: &mut Context) -> Vec<Entry> {
         return Vec::new();
     }
     let largest = context.largest_reading();
-    let play = || parameter("play_um", UM, 0.0, PLAY * largest, (0.0, MOST_PLAY * largest));
-    let lag = || parameter("fraction", 1.0, 0.0, LAG, (0.0, MOST_LAG));
+    let play = || parameter("play_um", 0.0, PLAY * largest, (0.0, MOST_PLAY * largest));
+    let lag = || parameter("fraction", 0.0, LAG, (0.0, MOST_LAG));
     let forms = [
         (None, Follows::BehindPlay, play()),
         (Some(FORMS[0]), Follows::BehindPlayOfBefore, play()),

@@ -9,7 +9,7 @@ use crate::inference::{
     Candidate, Effect, Finding, Location, Parameter, Quantity, Term, Variable, WrittenTo,
 };
 use crate::rod::Rod;
-use crate::units::DEG;
+use crate::units::{DEG, Unit};
 
 /// An effect with what it does on a rig.
 pub struct RigEffect {
@@ -89,12 +89,11 @@ pub(in crate::diagnosis::rig) fn largest_load(data: &[Datum]) -> f64 {
 
 pub(in crate::diagnosis::rig) fn parameter(
     name: &str,
-    unit: f64,
     neutral: f64,
     size: f64,
     bounds: (f64, f64),
 ) -> Parameter {
-    Parameter { name: name.into(), unit, neutral, size, bounds }
+    Parameter { name: name.into(), unit: Unit::of_key(name), neutral, size, bounds }
 }
 
 /// A candidate of one parameter.

@@ -14,7 +14,6 @@ use crate::inference::{
     Effect, Estimate, FindingPart, Kind, Location, Quantity, Reported, Run, Variable, WrittenTo,
 };
 use crate::spatial::Axis;
-use crate::units::UM;
 
 /// Slip of a bond or a clamp as a share of the largest reading.
 const STEP: f64 = 0.05;
@@ -34,10 +33,10 @@ pub static SLIP: RigEffect = RigEffect {
         formula: "y + s for the rest of a run, or of the file",
         prior: "5 % of the largest reading: a bond or a clamp that slips; a knock may be more",
         parameters: &[
-            ("um", "shift"),
-            ("dx_um", "shift of dx, at the same row"),
-            ("dy_um", "shift of dy, at the same row"),
-            ("dz_um", "shift of dz, at the same row"),
+            (&["um"], "shift"),
+            (&["dx_um"], "shift of dx, at the same row"),
+            (&["dy_um"], "shift of dy, at the same row"),
+            (&["dz_um"], "shift of dz, at the same row"),
         ],
         needs: "runs with two readings on either side",
         cause: "a slip of the clamp or of a sensor",
@@ -95,7 +94,7 @@ fn slips(context: &mut Context) -> Vec<Entry> {
             let is_other = before.channel != before.direction.axis;
             let channel = is_other.then_some(before.channel);
             let location = Location::AfterRow { run: run.clone(), row: before.row, channel, for_good: false };
-            let um = parameter("um", UM, 0.0, size, UNBOUNDED);
+            let um = parameter("um", 0.0, size, UNBOUNDED);
             entry(&SLIP, location, um, Action::Step(Arc::clone(&sequence), first))
         })
     };
@@ -146,7 +145,7 @@ fn for_good(data: &[Datum], size: f64) -> Vec<Entry> {
             let run = Run { axis: before.direction.axis, name: before.run_name() };
             let (row, channel) = (before.row, Some(channel));
             let location = Location::AfterRow { run, row, channel, for_good: true };
-            let um = parameter("um", UM, 0.0, size, UNBOUNDED);
+            let um = parameter("um", 0.0, size, UNBOUNDED);
             entries.push(entry(&SLIP, location, um, Action::Step(Arc::clone(&sequence), from)));
         }
     }

@@ -37,7 +37,7 @@ pub static NONLINEAR_STIFFNESS: RigEffect = RigEffect {
         summary: "the stiffness depends on the load",
         formula: "u = C·F·(1 + k₂·F²), or u = C·F·(1 + k₁·|F|)",
         prior: "5 % of the displacement at the largest load",
-        parameters: &[("per_n2", "k₂, coefficient of F²"), ("per_n", "k₁, coefficient of |F|")],
+        parameters: &[(&["per_n2"], "k₂, coefficient of F²"), (&["per_n"], "k₁, coefficient of |F|")],
         needs: "two sizes of load",
         cause: "a stiffness that depends on the load",
         cause_at: |_| "a stiffness that depends on the load".into(),
@@ -63,8 +63,8 @@ pub static CREEP: RigEffect = RigEffect {
         formula: "u = C·F·(1 + k·log₁₀(1 + t/t₀)), t₀ 1, 10, 60 or 600 s, by several clocks",
         prior: "3 % per decade of time: bondlines and laminates",
         parameters: &[
-            ("per_decade", "k, growth per decade of time"),
-            ("onset_s", "how long before the first reading of a run its load was hung, by that clock"),
+            (&["per_decade"], "k, growth per decade of time"),
+            (&["onset_s"], "how long before the first reading of a run its load was hung, by that clock"),
         ],
         needs: "times that differ (column `time_s`); `loaded_at_s` says when each load was hung",
         cause: "creep",
@@ -102,7 +102,7 @@ pub static THERMAL_SOFTENING: RigEffect = RigEffect {
         summary: "the rod is softer when it is warmer",
         formula: "u = C·F·(1 + k·(T − T̄)), T̄ the mean temperature of the recording",
         prior: "0.05 % per kelvin: stainless steels lose 0.04 % (Ledbetter, J. Appl. Phys. 52, 1981, 1587)",
-        parameters: &[("per_k", "k, growth of the deflection per kelvin")],
+        parameters: &[(&["per_k"], "k, growth of the deflection per kelvin")],
         needs: "temperatures that differ (column `temperature_c`)",
         cause: "moduli that fall with temperature",
         cause_at: |_| "moduli that fall with temperature".into(),
@@ -115,7 +115,7 @@ pub static THERMAL_SOFTENING: RigEffect = RigEffect {
     needs_rod: false,
     candidates: |context| {
         // a laminate may stiffen: ten times the usual either way
-        let per_kelvin = parameter("per_k", 1.0, 0.0, PER_KELVIN, (-10.0 * PER_KELVIN, 10.0 * PER_KELVIN));
+        let per_kelvin = parameter("per_k", 0.0, PER_KELVIN, (-10.0 * PER_KELVIN, 10.0 * PER_KELVIN));
         let softening = |memory| {
             let action = Action::Memory(memory, History::Temperature);
             entry(&THERMAL_SOFTENING, Location::Part(Part::Rod), per_kelvin, action)
@@ -138,7 +138,7 @@ pub static HYSTERESIS: RigEffect = RigEffect {
         summary: "unloading differs from loading, and not by friction",
         formula: "a loop h of full scale wide at half load, in seven forms",
         prior: "2 % of full scale: 0.1 % of a load cell, some per cent of bonds and clamps",
-        parameters: &[("fraction", "h, width of the loop over full scale")],
+        parameters: &[(&["fraction"], "h, width of the loop over full scale")],
         needs: "unloading (column `phase`)",
         cause: "hysteresis",
         cause_at: |_| "hysteresis".into(),
@@ -165,7 +165,7 @@ fn curvature(context: &mut Context) -> Vec<Entry> {
     let largest = context.largest_load();
     // at most nothing is left of the displacement, or ten times as much is there
     let share =
-        |name: &str, scale: f64| parameter(name, 1.0, 0.0, CURVATURE / scale, (-1.0 / scale, 10.0 / scale));
+        |name: &str, scale: f64| parameter(name, 0.0, CURVATURE / scale, (-1.0 / scale, 10.0 / scale));
     let forms = [
         (share("per_n2", largest * largest), Action::PerLoadSquared),
         (share("per_n", largest), Action::PerLoad),
@@ -214,7 +214,7 @@ fn creeping(context: &mut Context) -> Vec<Entry> {
             known.push(memory.clone());
             let form = format!("{}, t0 {t0} s", clock.name());
             let location = Location::Form { part: Part::Rod, form };
-            let per_decade = parameter("per_decade", 1.0, 0.0, PER_DECADE, (0.0, 1.0));
+            let per_decade = parameter("per_decade", 0.0, PER_DECADE, (0.0, 1.0));
             let action = Action::Memory(memory, History::Creep(clock, t0));
             let (mut creep, mut actions) = alternative(entry(&CREEP, location, per_decade, action));
             if is_free {
@@ -224,7 +224,7 @@ fn creeping(context: &mut Context) -> Vec<Entry> {
                 }
                 let onset = |onset: Onset| {
                     let usual = onset.usual;
-                    let before = parameter("onset_s", 1.0, usual, usual, (0.0, LATEST * usual));
+                    let before = parameter("onset_s", usual, usual, (0.0, LATEST * usual));
                     (before, Action::Onset(onset))
                 };
                 let (parameters, more): (Vec<_>, Vec<_>) = onsets.into_iter().map(onset).unzip();
@@ -244,7 +244,7 @@ fn lagging(context: &mut Context) -> Vec<Entry> {
             "" => Location::Part(Part::Rod),
             form => Location::Form { part: Part::Rod, form: form.into() },
         };
-        let fraction = parameter("fraction", 1.0, 0.0, LOOP, (0.0, 1.0));
+        let fraction = parameter("fraction", 0.0, LOOP, (0.0, 1.0));
         let action = Action::Memory(hysteresis(context.data, shape)?, History::Loop(shape));
         Some(alternative(entry(&HYSTERESIS, location, fraction, action)))
     };

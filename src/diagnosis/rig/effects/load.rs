@@ -46,9 +46,9 @@ pub static FRICTION: RigEffect = RigEffect {
             at the turn)",
         prior: "5 % of the largest load: the paper's lines cross the load axis at 0.9 to 1.1 of 20 N",
         parameters: &[
-            ("force_n", "friction force"),
-            ("presliding_um", "travel over which friction turns round, where the displacement is imposed"),
-            ("play_um", "play on either side that the motion crosses at every turn, likewise"),
+            (&["force_n"], "friction force"),
+            (&["presliding_um"], "travel over which friction turns round, where the displacement is imposed"),
+            (&["play_um"], "play on either side that the motion crosses at every turn, likewise"),
         ],
         needs: "loads; unloading distinguishes it from an offset",
         cause: "friction in the slide",
@@ -64,7 +64,7 @@ pub static FRICTION: RigEffect = RigEffect {
         let largest = context.largest_load();
         let is_imposed = context.data.iter().any(|d| d.imposed.is_some());
         let most = if is_imposed { largest } else { MOST_OF_LOAD * largest };
-        let force = || parameter("force_n", 1.0, 0.0, SLIDE * largest, (0.0, most));
+        let force = || parameter("force_n", 0.0, SLIDE * largest, (0.0, most));
         let mut entries = of_axes(context.data, Part::Slide, &|location, scope| {
             entry(&FRICTION, location, force(), Action::Friction(scope))
         });
@@ -105,7 +105,7 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
         formula: "F = load + f, for every load but zero",
         prior: "5 % of the largest load, as the paper's friction, which its lines cannot distinguish \
             from it",
-        parameters: &[("force_n", "added force")],
+        parameters: &[(&["force_n"], "added force")],
         needs: "loads",
         cause: "an offset of the load (hanger or tare)",
         cause_at: |location| "an offset of the load".to_owned() + &under(location),
@@ -120,7 +120,7 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
         let largest = context.largest_load();
         of_axes(context.data, Part::Hanger, &|location, scope| {
             let most = MOST_OF_LOAD * largest;
-            let force = parameter("force_n", 1.0, 0.0, TARE * largest, (-most, largest));
+            let force = parameter("force_n", 0.0, TARE * largest, (-most, largest));
             entry(&LOAD_OFFSET, location, force, Action::LoadOffset(scope))
         })
     },
@@ -145,7 +145,7 @@ pub static BACKLASH: RigEffect = RigEffect {
         summary: "play before the rod bends",
         formula: "y = bending + p towards the load, for every load but zero",
         prior: "2.5 % of the largest reading: 20 µm of play of a clamp where a rod bends by 0.8 mm",
-        parameters: &[("play_um", "free travel")],
+        parameters: &[(&["play_um"], "free travel")],
         needs: "a channel along a load",
         cause: "play in the clamp",
         cause_at: |location| "play in the clamp".to_owned() + &under(location),
@@ -160,7 +160,7 @@ pub static BACKLASH: RigEffect = RigEffect {
         let largest = context.largest_reading();
         let most = most_play(context.data);
         of_axes(context.data, Part::Clamp, &|location, scope| {
-            let play = parameter("play_um", UM, 0.0, PLAY * largest, (0.0, most));
+            let play = parameter("play_um", 0.0, PLAY * largest, (0.0, most));
             entry(&BACKLASH, location, play, Action::Play(scope))
         })
     },
@@ -181,10 +181,10 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
         formula: "d = nominal direction, turned by φ",
         prior: "1°: what the eye allows when a load is set up",
         parameters: &[
-            ("angle_deg", "angle"),
-            ("about_x_deg", "rotation of all loads about x"),
-            ("about_y_deg", "rotation of all loads about y"),
-            ("about_z_deg", "rotation of all loads about z"),
+            (&["angle_deg"], "angle"),
+            (&["about_x_deg"], "rotation of all loads about x"),
+            (&["about_y_deg"], "rotation of all loads about y"),
+            (&["about_z_deg"], "rotation of all loads about z"),
         ],
         needs: "a rod file; channels across the loads",
         cause: "a misaligned load",
@@ -229,12 +229,12 @@ fn at_turns(context: &Context, force: &Parameter) -> Vec<Entry> {
         let candidate = Candidate { is_alternative: true, weight, ..candidate };
         (candidate, vec![Action::Friction(scope), action])
     };
-    let presliding = parameter("presliding_um", UM, 0.0, PRESLIDING * largest, (0.0, largest));
+    let presliding = parameter("presliding_um", 0.0, PRESLIDING * largest, (0.0, largest));
     let mut entries = vec![of_form("with presliding".into(), RARE, presliding, Action::Presliding)];
     for share in PLAYS {
         let play = share * largest;
         // a reading is in the gap or beyond it: no step from here leads to a play of another size
-        let travel = parameter("play_um", UM, play, 0.25 * play, (play / SPAN, play * SPAN));
+        let travel = parameter("play_um", play, 0.25 * play, (play / SPAN, play * SPAN));
         let form = format!("with a play of about {} µm at every turn", significant(play / UM, 2));
         entries.push(of_form(form, RARE / PLAYS.len() as f64, travel, Action::SliderPlay));
     }
@@ -280,7 +280,7 @@ pub(super) fn pairs(from: &[Axis]) -> Vec<(Axis, Axis)> {
 
 /// An angle by which something was set up wrongly.
 pub(super) fn misalignment() -> Parameter {
-    parameter("angle_deg", DEG, 0.0, ALIGNMENT, WIDEST)
+    parameter("angle_deg", 0.0, ALIGNMENT, WIDEST)
 }
 
 /// Each load is set up by itself; where two axes were loaded their frame may be turned as a whole
@@ -303,7 +303,7 @@ fn load_turns(context: &mut Context) -> Vec<Entry> {
         });
     let whole = (axes.len() > 1).then(|| {
         let about = TURNS.map(|(name, from, towards)| {
-            (parameter(name, DEG, 0.0, ALIGNMENT, WIDEST), Action::TurnLoad([true; 3], from, towards))
+            (parameter(name, 0.0, ALIGNMENT, WIDEST), Action::TurnLoad([true; 3], from, towards))
         });
         let (parameters, actions) = about.into_iter().unzip();
         let location = Location::Part(Part::LoadFrame);

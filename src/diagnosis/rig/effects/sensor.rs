@@ -12,7 +12,6 @@ use crate::diagnosis::rig::mechanics::action::{Action, DriftPer};
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::spatial::Axis;
-use crate::units::{DEG, UM};
 
 /// Scale error of a displacement sensor that was not calibrated in place.
 const SCALE: f64 = 0.03;
@@ -20,7 +19,6 @@ const SCALE: f64 = 0.03;
 const NO_UNIT: (f64, f64) = (0.5, 2.0);
 /// Drift over the whole recording as a share of its largest reading.
 const DRIFT: f64 = 0.02;
-const HOUR: f64 = 3600.0;
 /// Within which share of a recording a drift settles, and what is said of it since the first
 /// reading of the file and since that of each run.
 const SETTLING: [(f64, [&str; 2]); 6] = [
@@ -62,7 +60,7 @@ pub static SENSOR_SCALE: RigEffect = RigEffect {
         summary: "a sensor shows too much or too little",
         formula: "y → s·y on one channel",
         prior: "3 %: a displacement sensor that was not calibrated in place",
-        parameters: &[("factor", "shown over true displacement")],
+        parameters: &[(&["factor"], "shown over true displacement")],
         needs: "a rod file",
         cause: "the scale of the sensor",
         cause_at: |location| format!("the scale of sensor {location}"),
@@ -75,7 +73,7 @@ pub static SENSOR_SCALE: RigEffect = RigEffect {
     needs_rod: true,
     candidates: |context| {
         let of_channel = |channel: Axis| {
-            let factor = parameter("factor", 1.0, 1.0, SCALE, NO_UNIT);
+            let factor = parameter("factor", 1.0, SCALE, NO_UNIT);
             let location = Location::Channel { channel, form: None };
             entry(&SENSOR_SCALE, location, factor, Action::SensorScale(channel))
         };
@@ -102,10 +100,10 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
         formula: "y = e·u, e turned by φ from the channel's axis",
         prior: "1°: what the eye allows when a sensor is set up",
         parameters: &[
-            ("angle_deg", "angle"),
-            ("about_x_deg", "rotation of all sensors about x"),
-            ("about_y_deg", "rotation of all sensors about y"),
-            ("about_z_deg", "rotation of all sensors about z"),
+            (&["angle_deg"], "angle"),
+            (&["about_x_deg"], "rotation of all sensors about x"),
+            (&["about_y_deg"], "rotation of all sensors about y"),
+            (&["about_z_deg"], "rotation of all sensors about z"),
         ],
         needs: "a rod file; loads across the channel",
         cause: "a misaligned sensor",
@@ -127,7 +125,7 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
         let single = pairs(&channels).into_iter().map(turned);
         let whole = (channels.len() > 1).then(|| {
             let about = TURNS.map(|(name, from, towards)| {
-                (parameter(name, DEG, 0.0, ALIGNMENT, WIDEST), Action::TurnSensors(from, towards))
+                (parameter(name, 0.0, ALIGNMENT, WIDEST), Action::TurnSensors(from, towards))
             });
             let (parameters, actions) = about.into_iter().unzip();
             let location = Location::Part(Part::Sensors);
@@ -161,18 +159,18 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
             duration D; zero at the first reading of file or run",
         prior: "2 % of the largest reading over the recording: steel of 0.5 m grows by 6 µm/K",
         parameters: &[
-            ("um_per_k", "drift per kelvin"),
-            ("um_per_h", "drift per hour"),
-            ("um", "drift over the recording"),
-            ("dx_um_per_k", "drift of dx per kelvin"),
-            ("dy_um_per_k", "drift of dy per kelvin"),
-            ("dz_um_per_k", "drift of dz per kelvin"),
-            ("dx_um_per_h", "drift of dx per hour"),
-            ("dy_um_per_h", "drift of dy per hour"),
-            ("dz_um_per_h", "drift of dz per hour"),
-            ("dx_um", "drift of dx over the recording"),
-            ("dy_um", "drift of dy over the recording"),
-            ("dz_um", "drift of dz over the recording"),
+            (&["um_per_k"], "drift per kelvin"),
+            (&["um_per_h"], "drift per hour"),
+            (&["um"], "drift over the recording"),
+            (&["dx_um_per_k"], "drift of dx per kelvin"),
+            (&["dy_um_per_k"], "drift of dy per kelvin"),
+            (&["dz_um_per_k"], "drift of dz per kelvin"),
+            (&["dx_um_per_h"], "drift of dx per hour"),
+            (&["dy_um_per_h"], "drift of dy per hour"),
+            (&["dz_um_per_h"], "drift of dz per hour"),
+            (&["dx_um"], "drift of dx over the recording"),
+            (&["dy_um"], "drift of dy over the recording"),
+            (&["dz_um"], "drift of dz over the recording"),
         ],
         needs: "temperatures or times (columns `temperature_c`, `time_s`)",
         cause: "thermal drift",
@@ -228,14 +226,6 @@ impl DriftPer {
             DriftPer::Kelvin => "µm per kelvin",
             DriftPer::Hour => "µm per hour",
             DriftPer::Recording => "µm",
-        }
-    }
-
-    /// SI.
-    fn unit(self) -> f64 {
-        match self {
-            DriftPer::Kelvin | DriftPer::Recording => UM,
-            DriftPer::Hour => UM / HOUR,
         }
     }
 }
@@ -321,13 +311,12 @@ fn drifts_since(
     zero: &dyn Fn(&Datum) -> usize,
 ) -> Vec<Entry> {
     let Course { values, per, size, .. } = course;
-    let unit = per.unit();
     let shift = |channel: Axis| {
         let own = data.iter().enumerate().filter(|(_, d)| d.channel == channel);
         Action::Drift(channel, *per, own.map(|(i, d)| (i, values[i] - values[zero(d)])).collect())
     };
     let of_channel = |&channel: &Axis| {
-        let drift = parameter(per.suffix(), unit, 0.0, *size, UNBOUNDED);
+        let drift = parameter(per.suffix(), 0.0, *size, UNBOUNDED);
         entry(&THERMAL_DRIFT, Location::Channel { channel, form }, drift, shift(channel))
     };
     let mut entries: Vec<Entry> = channels.iter().map(of_channel).collect();
@@ -335,7 +324,7 @@ fn drifts_since(
         // what warms up moves the tip in some direction
         let vector = channels.iter().map(|&channel| {
             let name = format!("d{channel}_{}", per.suffix());
-            (parameter(&name, unit, 0.0, *size, UNBOUNDED), shift(channel))
+            (parameter(&name, 0.0, *size, UNBOUNDED), shift(channel))
         });
         let (parameters, actions) = vector.unzip();
         let location = match form {

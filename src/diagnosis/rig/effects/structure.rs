@@ -12,7 +12,7 @@ use crate::inference::{
     Candidate, Effect, Finding, ForwardModel, Kind, Location, Part, Quantity, Reported, Term, WrittenTo,
 };
 use crate::rod::{self, BendFlexibility, Rod};
-use crate::units::{MM, URAD_PER_NM, significant};
+use crate::units::{MM, significant};
 
 /// Share by which a rod is softer than its model: 1 − 1/r is 0.27 rms over the r_rod of the paper's
 /// six rods (1.013 to 2.302).
@@ -33,7 +33,7 @@ pub static STIFFNESS_SCALE: RigEffect = RigEffect {
         summary: "the whole rod is softer or stiffer than stated",
         formula: "E → f·E, G → f·G in all pipes",
         prior: "27 %: 1 − 1/r, rms over the r_rod of the paper's six rods",
-        parameters: &[("factor", "actual over nominal stiffness")],
+        parameters: &[(&["factor"], "actual over nominal stiffness")],
         needs: "a rod file",
         cause: "moduli, walls or lengths that differ from the rod file",
         cause_at: |_| "moduli, walls or lengths that differ from the rod file".into(),
@@ -49,7 +49,7 @@ pub static STIFFNESS_SCALE: RigEffect = RigEffect {
         let size = SOFTNESS * context.stiffness.max(1.0);
         let far = context.stiffness;
         let bounds = (SCALES.0 * far.min(1.0), SCALES.1 * far.max(1.0));
-        let factor = parameter("factor", 1.0, 1.0, size, bounds);
+        let factor = parameter("factor", 1.0, size, bounds);
         vec![entry(&STIFFNESS_SCALE, Location::Part(Part::Rod), factor, Action::Stiffness)]
     },
     missing: |_| NOT_YIELDING,
@@ -70,7 +70,7 @@ pub static SHEAR_MODULUS: RigEffect = RigEffect {
         summary: "torsion and shear are softer or stiffer than stated",
         formula: "G → f·G in all pipes",
         prior: "27 %, as for the whole stiffness",
-        parameters: &[("factor", "actual over nominal stiffness")],
+        parameters: &[(&["factor"], "actual over nominal stiffness")],
         needs: "a rod file; loads that twist or shear the rod",
         cause: "a shear modulus that differs from the rod file",
         cause_at: |_| "a shear modulus that differs from the rod file".into(),
@@ -82,7 +82,7 @@ pub static SHEAR_MODULUS: RigEffect = RigEffect {
     usual: &[Usual::Share(SOFTNESS)],
     needs_rod: true,
     candidates: |_| {
-        let factor = parameter("factor", 1.0, 1.0, SOFTNESS, SCALES);
+        let factor = parameter("factor", 1.0, SOFTNESS, SCALES);
         vec![entry(&SHEAR_MODULUS, Location::Part(Part::Rod), factor, Action::ShearModulus)]
     },
     missing: |_| "the loads neither twist nor shear the rod",
@@ -104,9 +104,9 @@ pub static JOINT_COMPLIANCE: RigEffect = RigEffect {
         formula: "θ = β·M at a station, in bending and in torsion",
         prior: "20 % of the rod's own ∫ds/EI and ∫ds/GJ, as at the corner of the paper's rod 2#",
         parameters: &[
-            ("bending_urad_per_nm", "the joint's compliance in bending"),
-            ("torsion_urad_per_nm", "the joint's compliance in torsion"),
-            ("station_mm", "station of the joint"),
+            (&["bending_urad_per_nm"], "the joint's compliance in bending"),
+            (&["torsion_urad_per_nm"], "the joint's compliance in torsion"),
+            (&["station_mm"], "station of the joint"),
         ],
         needs: "a rod file",
         cause: "a compliant connection",
@@ -155,8 +155,8 @@ pub static ROOT_COMPLIANCE: RigEffect = RigEffect {
         formula: "θ = β·M at the root",
         prior: "20 % of the rod's own ∫ds/EI and ∫ds/GJ",
         parameters: &[
-            ("bending_urad_per_nm", "compliance in bending"),
-            ("torsion_urad_per_nm", "compliance in torsion"),
+            (&["bending_urad_per_nm"], "compliance in bending"),
+            (&["torsion_urad_per_nm"], "compliance in torsion"),
         ],
         needs: "a rod file",
         cause: "a compliant flange or adapter",
@@ -187,7 +187,7 @@ pub static BEND_FLEXIBILITY: RigEffect = RigEffect {
         summary: "the bend's cross-section becomes oval under load",
         formula: "bending of the arc × k",
         prior: "von Kármán's factor for the section, less the file's; 0.3 at least",
-        parameters: &[("factor", "k: the arc's flexibility over that of a beam")],
+        parameters: &[(&["factor"], "k: the arc's flexibility over that of a beam")],
         needs: "a rod file with a bend radius",
         cause: "its cross-section becomes oval",
         cause_at: |_| "a bend whose cross-section becomes oval".into(),
@@ -208,7 +208,7 @@ pub static BEND_FLEXIBILITY: RigEffect = RigEffect {
         let size = (karman - of_file).abs().max(BEND);
         // a bend may ovalise, but not grow stiffer than a beam
         let bounds = (of_file.min(1.0), 100.0);
-        let factor = parameter("factor", 1.0, of_file, size, bounds);
+        let factor = parameter("factor", of_file, size, bounds);
         let action = Action::Bend(of_file);
         vec![entry(&BEND_FLEXIBILITY, Location::Part(Part::Bend), factor, action)]
     },
@@ -291,8 +291,7 @@ fn joint(
 ) -> Entry {
     let rotation = structure.rotation();
     let [bending, torsion] = structure.add_joint(station);
-    let compliance =
-        |name, k: usize| parameter(name, URAD_PER_NM, of_file[k], JOINT * rotation[k], NOT_NEGATIVE);
+    let compliance = |name, k: usize| parameter(name, of_file[k], JOINT * rotation[k], NOT_NEGATIVE);
     let mut parameters = vec![compliance("bending_urad_per_nm", 0), compliance("torsion_urad_per_nm", 1)];
     let mut actions = vec![Action::Joint(bending, of_file[0]), Action::Joint(torsion, of_file[1])];
     if let Some(range) = range
@@ -301,7 +300,7 @@ fn joint(
         let [before, _, behind] = nodes.stations;
         // as likely anywhere
         let size = (behind - before) / 12.0f64.sqrt();
-        parameters.push(parameter("station_mm", MM, station, size, (before, behind)));
+        parameters.push(parameter("station_mm", station, size, (before, behind)));
         actions.push(Action::Station(nodes));
     }
     (candidate(&effect.effect, location, parameters), actions)
@@ -353,7 +352,7 @@ fn amount(finding: &Finding, model: &RigModel) -> String {
             Deformation::Bending => "in bending",
             Deformation::Torsion => "in torsion",
         };
-        let of_file = parameter.neutral / parameter.unit;
+        let of_file = parameter.neutral / parameter.unit.si;
         let instead = match of_file > 0.0 {
             true => format!(" instead of {}", significant(of_file, 3)),
             false => String::new(),

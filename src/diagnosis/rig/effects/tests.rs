@@ -75,7 +75,8 @@ fn every_effect_of_the_registry_is_met_and_described_with_its_number() {
         assert!(names_keys || !description.contains('_'), "{effect}: {description}");
         assert!(names_keys || !(effect.cause_at)(&candidate.location).contains('_'));
         for parameter in &candidate.parameters {
-            let is_listed = effect.parameters.iter().any(|(name, _)| *name == parameter.name);
+            let is_listed =
+                effect.parameters.iter().any(|(names, _)| names.contains(&parameter.name.as_str()));
             assert!(is_listed, "{effect} has {} beyond its record", parameter.name);
         }
         if !met.contains(&effect) {

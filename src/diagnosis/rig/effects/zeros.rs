@@ -10,7 +10,6 @@ use super::places::{measured_channels, runs_by_sensor};
 use crate::diagnosis::rig::mechanics::action::{Action, Weights};
 use crate::diagnosis::rig::recording::columns::{column, sensor_in_run};
 use crate::inference::{Key, Location};
-use crate::units::UM;
 
 /// Usual size as a share of the largest reading.
 const ZERO: f64 = 0.1;
@@ -38,7 +37,7 @@ fn offsets(context: &mut Context) -> Vec<Entry> {
     let data = context.data;
     let zero = |place: Key, own: Vec<usize>| {
         let readings: Weights = own.into_iter().map(|i| (i, 1.0)).collect();
-        let um = parameter("um", UM, 0.0, size, UNBOUNDED);
+        let um = parameter("um", 0.0, size, UNBOUNDED);
         entry(&ZERO_NOT_TAKEN, Location::from(place), um, Action::Shift(readings))
     };
     let of_channel = |channel| {

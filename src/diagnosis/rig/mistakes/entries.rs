@@ -132,14 +132,11 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
                 looks_like: format!("{location} looks mistyped"),
                 location,
                 estimates: vec![match meant {
-                    Some(meant) => Estimate { name: "n".into(), ..exact("n", meant) },
-                    None => Estimate {
-                        name: "n".into(),
-                        unit: 1.0,
-                        value: along,
-                        low: along - 2.0 * shown.error,
-                        high: along + 2.0 * shown.error,
-                    },
+                    Some(meant) => exact("n", meant),
+                    None => {
+                        let half = 2.0 * shown.error;
+                        Estimate::as_written("n", along, along - half, along + half)
+                    }
                 }],
                 explains: apart * most_slope(lines, &line_of, own),
                 data: own.clone(),

@@ -11,7 +11,6 @@ use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Estimate, Key, Quantity};
 use crate::spatial::{Axis, Direction};
 use crate::statistics::median;
-use crate::units::UM;
 
 /// A flipped group has the slope of the others, within this share.
 const ALIKE: f64 = 0.3;
@@ -233,13 +232,7 @@ fn spread(values: &[f64], about: f64) -> Option<f64> {
 }
 
 fn part(location: Key, zero: f64, error: f64, data: Vec<usize>) -> Part {
-    let estimate = Estimate {
-        name: "um".into(),
-        unit: UM,
-        value: zero,
-        low: zero - 2.0 * error,
-        high: zero + 2.0 * error,
-    };
+    let estimate = Estimate::new("um", zero, zero - 2.0 * error, zero + 2.0 * error);
     let zero_um: Quantity = estimate.quantity();
     Part {
         effect: &OFFSET_MISTAKE,

@@ -43,5 +43,5 @@ impl PossibleMistake {
 
 /// An estimate without a unit.
 pub(super) fn exact(name: &str, value: f64) -> Estimate {
-    Estimate { name: name.into(), unit: 1.0, value, low: value, high: value }
+    Estimate::as_written(name, value, value, value)
 }

@@ -112,7 +112,7 @@ pub(super) fn stuck(data: &[Datum], lines: &[Line], expected: Option<&Expected>)
         found.push(Part {
             effect: &STUCK_SENSOR,
             location: Key::new(&name),
-            estimates: vec![Estimate { name: "um".into(), unit: UM, value, low, high }],
+            estimates: vec![Estimate::new("um", value, low, high)],
             observed: format!(
                 "{name} shows {} whatever the load: leave the column out, and look at its sensor",
                 Quantity { value: value / UM, low: low / UM, high: high / UM }.say("µm")
@@ -175,7 +175,7 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
             found.push(Part {
                 effect: &SATURATED_SENSOR,
                 location: Key::new(&name),
-                estimates: vec![Estimate { name: "um".into(), unit: UM, value: side * limit, low: side * limit, high: side * limit }],
+                estimates: vec![Estimate::new("um", side * limit, side * limit, side * limit)],
                 observed: format!(
                     "{name} is cut off at {} µm in {} readings: leave them out, or use a sensor of a longer range",
                     significant(shown, 4),
@@ -259,7 +259,7 @@ pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
             found.push(Part {
                 effect: &STUCK_SENSOR,
                 location: Key::new(&name).rows(&rows),
-                estimates: vec![Estimate { name: "um".into(), unit: UM, value, low: value, high: value }],
+                estimates: vec![Estimate::new("um", value, value, value)],
                 observed: format!(
                     "{name} stays at {shown} µm in the {rows} while the loads change: leave these readings out"
                 ),

@@ -5,7 +5,6 @@ use crate::inference::{Candidate, Location, Parameter, UNKNOWN, Variable};
 
 /// Columns of a curve.
 pub(super) const MOST_COLUMNS: usize = 6;
-pub(super) const PERCENT: f64 = 0.01;
 /// Size of a curve as a share of the largest reading, or of the deflection.
 pub(super) const SHARE: f64 = 0.05;
 /// The same, as a share of the largest of all readings: a sensor and its holder are a little wrong

@@ -11,13 +11,12 @@
 
 use std::sync::Arc;
 
-use super::along::{ALL_DEFLECTIONS, LEAST_SHIFT, LOAD, PERCENT, SHARE, largest_reading, rival};
+use super::along::{ALL_DEFLECTIONS, LEAST_SHIFT, LOAD, SHARE, largest_reading, rival};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
 use crate::diagnosis::rig::mechanics::action::{Action, Weights};
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Location, Variable};
 use crate::spatial::Axis;
-use crate::units::UM;
 
 /// Loads at which a slope may change.
 const MOST_KNOTS: usize = 12;
@@ -95,7 +94,7 @@ fn kinks(data: &[Datum], deflections: &[f64], place: &str, group: &[usize]) -> V
                 },
                 along: Some(if way == Way::Both { Variable::Load } else { Variable::SignedLoad }),
             };
-            let parameter = parameter("percent", PERCENT, 0.0, SHARE, UNBOUNDED);
+            let parameter = parameter("percent", 0.0, SHARE, UNBOUNDED);
             found.push((rival(location, vec![parameter]), vec![Action::Shift(weights)]));
         }
     }
@@ -147,7 +146,7 @@ fn seats(data: &[Datum]) -> Vec<Entry> {
             follows: format!("follows about {power} (readings along the load)"),
             along: Some(LOAD.variable),
         };
-        let mut candidate = rival(location, vec![parameter("um", UM, 0.0, size, UNBOUNDED)]);
+        let mut candidate = rival(location, vec![parameter("um", 0.0, size, UNBOUNDED)]);
         candidate.weight = 1.0 / EXPONENTS.len() as f64;
         (candidate, vec![Action::Shift(weights)])
     };

@@ -9,7 +9,7 @@
 
 use std::f64::consts::PI;
 
-use super::along::{MOST_COLUMNS, PERCENT, rival};
+use super::along::{MOST_COLUMNS, rival};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
 use crate::diagnosis::rig::mechanics::action::Action;
 use crate::diagnosis::rig::mechanics::structure::Structure;
@@ -35,7 +35,7 @@ pub(super) fn along_the_rod(data: &[Datum], structure: &Structure, place: &[usiz
             (i, parts[place[i]][along] * datum.signed_load())
         };
         let weights = data.iter().enumerate().map(weight).collect();
-        (parameter(&format!("cosine_{j}_percent"), PERCENT, 0.0, VARIES, UNBOUNDED), Action::Shift(weights))
+        (parameter(&format!("cosine_{j}_percent"), 0.0, VARIES, UNBOUNDED), Action::Shift(weights))
     };
     let (parameters, actions) = (0..MOST_COLUMNS).map(of_wave).unzip();
     let location = Location::Curve {

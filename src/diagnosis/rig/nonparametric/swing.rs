@@ -20,7 +20,6 @@ use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
 use crate::diagnosis::rig::mechanics::action::{Action, Weights};
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::Location;
-use crate::units::UM;
 
 const MOST_SWINGS: usize = 8;
 /// Periods that are tried for each swing more.
@@ -58,7 +57,7 @@ pub(super) fn all(along: Along, coordinate: &Coordinate, data: &[Datum]) -> Vec<
                 }
             };
             let weights = Weights { data: Arc::clone(own), values: own.iter().map(at).collect() };
-            (parameter("um", UM, 0.0, size(own), UNBOUNDED), Action::Shift(weights))
+            (parameter("um", 0.0, size(own), UNBOUNDED), Action::Shift(weights))
         };
         let waves: [Wave; 2] = [f64::cos, f64::sin];
         let all = own.iter().flat_map(|own| waves.map(|wave| (own, wave)));

@@ -17,6 +17,7 @@ use crate::limits;
 use crate::rod::law::SIDE;
 use crate::rod::{LawMemory, LawVariable, RodLawPlace};
 use crate::toml_text::{Number, Required, TomlText};
+use crate::units::Unit;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -201,7 +202,7 @@ fn parameter(toml: TomlText, raw: &RawParameter) -> Result<Parameter> {
     if low >= high {
         return Err(toml.is("size", &raw.size, "`low` below `high`"));
     }
-    Ok(Parameter { name: raw.name.get_ref().clone(), unit: 1.0, neutral, size, bounds: (low, high) })
+    Ok(Parameter { name: raw.name.get_ref().clone(), unit: Unit::NONE, neutral, size, bounds: (low, high) })
 }
 
 /// Records of effects are statics. Those of files are kept for as long as the program runs, each

@@ -97,7 +97,6 @@ impl PossibleMistake {
             true => format!("Add {size}{symbol} to {}", self.location),
             false => format!("Subtract {size}{symbol} from {}", self.location),
         };
-        self.estimates =
-            vec![Estimate { name: name.into(), unit: 1.0, value, low: value - half, high: value + half }];
+        self.estimates = vec![Estimate::as_written(name, value, value - half, value + half)];
     }
 }

@@ -53,13 +53,7 @@ impl MistakeSearch<'_> {
                     location: cell(&name, &pose),
                     cure: format!("Write {text} for {recorded:.places$} as {name} of {pose}"),
                     why: why.into(),
-                    estimates: vec![Estimate {
-                        name: "meant".into(),
-                        unit: 1.0,
-                        value,
-                        low: value,
-                        high: value,
-                    }],
+                    estimates: vec![Estimate::as_written("meant", value, value, value)],
                     log_prior,
                 });
             }

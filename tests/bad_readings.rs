@@ -116,6 +116,16 @@ fn every_bad_cell_or_column_is_named_with_its_place() {
             "rig.csv:1: there is no offset, expected a column dx_um, dy_um or dz_um (micrometres) -> is the column dz_µm meant to be dz_um?",
         ),
         (
+            "dz_um",
+            "dz_mm",
+            "rig.csv:1: there is no offset, expected a column dx_um, dy_um or dz_um (micrometres) -> dz_mm would be in mm: multiply by 1000, into dz_um",
+        ),
+        (
+            "load_n",
+            "load_g",
+            "rig.csv:1: there is no load, expected a column load_n (newtons) or load_kg (kilograms) -> load_g would be in g: multiply by 0.00980665, into load_n",
+        ),
+        (
             "axis",
             "Achse",
             "rig.csv:1: there is no column axis, expected the direction of each load, such as x or -z -> rename \"Achse\" to axis",

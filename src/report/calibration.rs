@@ -281,7 +281,9 @@ pub fn headline(
     if let Some(cv) = cross_validation {
         words += &format!("; error at held-out poses ({} folds) {}", cv.folds, described(&cv.summary));
     }
-    words + "."
+    let judged = accuracy(campaign.accuracy.as_ref(), calibration, cross_validation);
+    let verdict = cards::verdict_sentence(campaign, &judged);
+    words + "." + &verdict.map_or_else(String::new, |verdict| format!(" {verdict}"))
 }
 
 /// The body of [`report`].

@@ -14,7 +14,7 @@ mod write;
 
 use std::path::Path;
 
-use crate::delimited::{Row, Table, nearest_name, renamed};
+use crate::delimited::{Row, Table, meant_to_be, nearest_name, renamed};
 use crate::error::{Error, Place, Result};
 use crate::files;
 use crate::limits;
@@ -194,7 +194,7 @@ fn check_numbers(row: &Reading) -> Result<()> {
 fn check_columns(table: &Table) -> Result<()> {
     let missing = |what: &str, expected: &str, wanted: &[&str]| {
         let meant = table.columns().find_map(|column| Some((column, nearest_name(column, wanted)?)));
-        let hint = meant.map(|(column, known)| format!("is the column {column} meant to be {known}?"));
+        let hint = meant.map(|(column, known)| meant_to_be(column, known));
         let hint = renamed(table.columns(), &KNOWN_COLUMNS, wanted).or(hint);
         let hint = hint.or_else(|| Some(table.columns_found()));
         Err(table.header_error("", format!("there is no {what}"), expected.into(), hint))

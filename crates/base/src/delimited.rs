@@ -14,7 +14,7 @@ mod table;
 mod written;
 
 pub use foreign::renamed;
-pub use names::nearest_name;
+pub use names::{converted, meant_to_be, nearest_name};
 pub use numbers::Dialect;
 pub use table::{Row, Table};
 pub use written::{cell, comments_above, guarded, is_obeyed, message, quoted, visible, visible_lines};

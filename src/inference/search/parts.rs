@@ -6,7 +6,8 @@ use crate::inference::score::priors::MISTAKE;
 use crate::inference::search::Search;
 use crate::inference::search::selection::APART;
 use crate::inference::{
-    Estimate, FindingPart, ForwardModel, Hypothesis, Kind, Location, Parameter, Rival, Term,
+    Candidate, Effect, Estimate, FindingPart, ForwardModel, Hypothesis, Kind, Location, Parameter, Rival,
+    Term,
 };
 use crate::statistics::{chi_squared_survival, student_t_quantile};
 
@@ -54,7 +55,18 @@ pub fn part(
     let nearly = gained - (2.0 * APART.ln()).max(ABOUT * gained);
     // a mistake is as rare as it is easily looked up: it is no less of a rival
     let rare = |index: usize| if candidates[index].effect.kind == Kind::Mistake { MISTAKE } else { 1.0 };
-    let is_above = |index: usize, least: f64| additions[index] - rare(index).ln() > least;
+    let own = candidates[term.candidate].effect;
+    let many = in_many_places(candidates, &additions);
+    let places_of = |effect: &Effect| {
+        many.iter().find(|(best, _)| candidates[*best].effect == effect).copied().unwrap_or((0, 1.0))
+    };
+    let of_own = places_of(own).1;
+    // an effect against another one, each wherever it may be
+    let places = |index: usize| match places_of(candidates[index].effect) {
+        (best, of_other) if best == index && candidates[index].effect != own => of_other / of_own,
+        _ => 1.0,
+    };
+    let is_above = |index: usize, least: f64| additions[index] + (places(index) / rare(index)).ln() > least;
     let mut near = search.likeliest(&additions, false);
     near.retain(|&index| index != term.candidate && is_above(index, nearly));
     let surely = near.iter().filter(|&&index| is_above(index, least)).count();
@@ -63,7 +75,8 @@ pub fn part(
         .into_iter()
         .filter_map(|index| {
             let other = search.with(&rest, index);
-            let odds = (hypothesis.log_probability - other.log_probability).exp() * rare(index);
+            let factor = rare(index) / places(index);
+            let odds = (hypothesis.log_probability - other.log_probability).exp() * factor;
             let own = other.terms.last()?.clone();
             let (effect, location) = (candidates[index].effect, model.location(&own));
             Some(Rival { effect, location, term: own, hypothesis: other, odds })
@@ -73,8 +86,7 @@ pub fn part(
     rivals.sort_by(|a, b| a.odds.total_cmp(&b.odds));
     // nor is it known which of several places along one part is the right one
     let is_along = |location: &Location| matches!(location, Location::Named(_) | Location::Station(_));
-    let effect = candidates[term.candidate].effect;
-    for rival in rivals.iter().filter(|rival| rival.effect == effect && is_along(&rival.location)) {
+    for rival in rivals.iter().filter(|rival| rival.effect == own && is_along(&rival.location)) {
         if is_along(&candidates[term.candidate].location) {
             let at = rival.hypothesis.covariance.nrows() - rival.term.values.len();
             widen(&mut estimates, intervals(model, &rival.hypothesis, &rival.term, at, coverage_factor));
@@ -97,6 +109,22 @@ pub fn part(
         explains: explained(search, &rest, hypothesis),
         rivals,
     }
+}
+
+/// For each effect its likeliest candidate, and how much likelier than that it is that the effect
+/// is there at all, in any of its places and forms: Σ exp(aᵢ − a_best), a the ln of what it adds.
+fn in_many_places(candidates: &[Candidate], additions: &[f64]) -> Vec<(usize, f64)> {
+    let mut best: Vec<(usize, f64)> = Vec::new();
+    for (index, &added) in additions.iter().enumerate().filter(|(_, added)| **added > f64::NEG_INFINITY) {
+        match best.iter_mut().find(|(other, _)| candidates[*other].effect == candidates[index].effect) {
+            None => best.push((index, 1.0)),
+            Some((other, sum)) if added > additions[*other] => {
+                (*other, *sum) = (index, 1.0 + *sum * (additions[*other] - added).exp());
+            }
+            Some((other, sum)) => *sum += (added - additions[*other]).exp(),
+        }
+    }
+    best
 }
 
 /// How many standard deviations a 95 % interval is, by the degrees of freedom that a hypothesis
@@ -205,4 +233,30 @@ fn intervals(
         Estimate { name, unit, value, low, high }
     };
     term.values.iter().zip(parameters).enumerate().map(interval).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::inference::tests::Columns;
+
+    /// Three places of a half each and one of the whole are two and a half times the best of them;
+    /// one that is there already is in no place more.
+    #[test]
+    fn an_effect_is_as_likely_as_all_its_places_together() {
+        let mut model = Columns::new(1);
+        for (effect, place) in
+            [("hinge", "a"), ("slide", "b"), ("hinge", "c"), ("hinge", "d"), ("hinge", "e")]
+        {
+            model.add(effect, place, DMatrix::from_element(1, 1, 1.0), false);
+        }
+        let half = 0.5f64.ln();
+        let found = in_many_places(&model.candidates, &[half, 3.0, 0.0, half, half]);
+        assert_eq!(found.iter().map(|(best, _)| *best).collect::<Vec<_>>(), [2, 1]);
+        assert!((found[0].1 - 2.5).abs() < 1e-12 && found[1].1 == 1.0);
+        let found = in_many_places(&model.candidates, &[f64::NEG_INFINITY, 3.0, 0.0, half, half]);
+        assert!(found[1].0 == 2 && (found[1].1 - 2.0).abs() < 1e-12);
+    }
 }

@@ -5,6 +5,7 @@ use crate::calibration::{
 };
 use crate::report::length::length;
 use crate::report::{Card, Tone};
+use crate::units::{UM, significant};
 
 /// The fit, the errors before and after, at poses that it has not seen, and the verdict.
 pub(super) fn cards(
@@ -67,18 +68,50 @@ fn fit(calibration: &Calibration) -> Card {
     card("converged", unknown, Tone::Good)
 }
 
+/// What the campaign asks for: `mean at most 46 µm`.
+fn asked(campaign: &Campaign) -> Vec<String> {
+    let limits = campaign.accuracy.as_ref();
+    [("mean", limits.and_then(|limits| limits.mean)), ("largest", limits.and_then(|limits| limits.max))]
+        .into_iter()
+        .filter_map(|(name, limit)| Some(format!("{name} at most {}", length(limit?))))
+        .collect()
+}
+
+/// Which poses a verdict stands on.
+fn judged_by(judged: &Accuracy) -> &'static str {
+    match judged.judged_by {
+        Some("validation") => "validation poses",
+        _ => "held-out poses",
+    }
+}
+
+/// The verdict as a sentence, where the campaign asks for one; numbers as fine as their difference.
+pub fn verdict_sentence(campaign: &Campaign, judged: &Accuracy) -> Option<String> {
+    campaign.accuracy.as_ref()?;
+    let asked = asked(campaign).join(", ");
+    let verdict = match judged.verdict {
+        AccuracyVerdict::Pass => "pass",
+        AccuracyVerdict::Fail => "FAIL",
+        AccuracyVerdict::NotEvaluated => {
+            return Some(format!(
+                "Accuracy: not evaluated, there are no validation poses and none were held out (asked: {asked})."
+            ));
+        }
+    };
+    let errors = judged.errors?;
+    let um = |x: f64| significant(x / UM, 4);
+    Some(format!(
+        "Accuracy: {verdict}, mean {} µm, largest {} µm at the {} (asked: {asked}).",
+        um(errors.mean),
+        um(errors.max),
+        judged_by(judged)
+    ))
+}
+
 /// It predicts.
 fn verdict(campaign: &Campaign, judged: &Accuracy) -> Card {
     let limits = campaign.accuracy.as_ref();
-    let asked: Vec<String> =
-        [("mean", limits.and_then(|limits| limits.mean)), ("largest", limits.and_then(|limits| limits.max))]
-            .into_iter()
-            .filter_map(|(name, limit)| Some(format!("{name} at most {}", length(limit?))))
-            .collect();
-    let by = match judged.judged_by {
-        Some("validation") => "validation poses",
-        _ => "held-out poses",
-    };
+    let (asked, by) = (asked(campaign), judged_by(judged));
     let label = "Accuracy";
     match judged.verdict {
         AccuracyVerdict::Pass => {

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::columns::{KNOWN_COLUMNS, OFFSET_COLUMNS, is_one_of};
 use super::reading::{Axis, Reading, newtons, only_load};
-use crate::delimited::{Dialect, Table, nearest_name, quoted};
+use crate::delimited::{Dialect, Table, converted, nearest_name, quoted};
 use crate::units::{UM, significant};
 
 /// Offsets that are all smaller than this are hardly micrometres: no sensor of a rig resolves a
@@ -86,8 +86,10 @@ impl fmt::Display for Warning {
             Warning::DecimalCommas(dialect) => write!(f, "{dialect}"),
             Warning::UnknownColumn { column, nearest } => {
                 write!(f, "the column {} is not read; ", quoted(column))?;
-                if let Some(nearest) = nearest {
-                    write!(f, "did you mean {nearest}? ")?;
+                match nearest.map(|nearest| (nearest, converted(column, nearest))) {
+                    Some((_, Some(converted))) => write!(f, "{converted}; ")?,
+                    Some((nearest, None)) => write!(f, "did you mean {nearest}? ")?,
+                    None => {}
                 }
                 write!(f, "known columns: {}", KNOWN_COLUMNS.join(", "))
             }

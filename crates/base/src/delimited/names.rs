@@ -1,5 +1,7 @@
 //! Misspelt names: which known one is near.
 
+use crate::units::{STANDARD_GRAVITY, Unit, significant};
+
 /// The candidate that a misspelt `name` was most likely meant to be, if any is similar.
 pub fn nearest_name<'c>(name: &str, candidates: &[&'c str]) -> Option<&'c str> {
     let name = name.trim().to_lowercase().replace(['µ', 'μ'], "u").replace([' ', '-'], "_");
@@ -13,6 +15,39 @@ pub fn nearest_name<'c>(name: &str, candidates: &[&'c str]) -> Option<&'c str> {
     };
     let nearest = candidates.iter().map(|&c| (distance(c), c)).min_by_key(|&(distance, _)| distance);
     nearest.filter(|&(distance, c)| distance <= 2 && distance * 2 < c.len()).map(|(_, c)| c)
+}
+
+/// Asks whether a column was meant to be the known one, or says what to do with its numbers as
+/// [`converted`] does.
+pub fn meant_to_be(column: &str, known: &str) -> String {
+    converted(column, known).unwrap_or_else(|| format!("is the column {column} meant to be {known}?"))
+}
+
+/// What to do with the numbers of a column whose unit is another one of the same kind.
+///
+/// ```
+/// use rodcal_base::delimited::converted;
+///
+/// let said = converted("dy_mm", "dy_um").unwrap();
+/// assert_eq!(said, "dy_mm would be in mm: multiply by 1000, into dy_um");
+/// let said = converted("load_g", "load_n").unwrap();
+/// assert_eq!(said, "load_g would be in g: multiply by 0.00980665, into load_n");
+/// assert_eq!(converted("dz", "dz_um"), None);
+/// ```
+pub fn converted(column: &str, known: &str) -> Option<String> {
+    let (own, other) = (Unit::of_key(&column.trim().to_lowercase()), Unit::of_key(known));
+    let factor = match (own.suffix, other.suffix) {
+        (own, other) if own == other => None,
+        ("um" | "mm" | "m", "um" | "mm" | "m") | ("g" | "kg", "kg") => Some(own.si / other.si),
+        ("g" | "kg", "n") => Some(own.si * STANDARD_GRAVITY),
+        _ => None,
+    }?;
+    let digits = significant(factor, 6);
+    let factor = match digits.contains('.') {
+        true => digits.trim_end_matches('0').trim_end_matches('.'),
+        false => &digits,
+    };
+    Some(format!("{column} would be in {}: multiply by {factor}, into {known}", own.symbol))
 }
 
 /// Levenshtein's distance: how many characters to insert, delete or replace.

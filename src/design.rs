@@ -49,9 +49,6 @@ pub use poses::{
 pub use refine::{Better, Refined, refine, weights};
 pub use rods_and_modes::{RodForecast, rods_and_modes};
 pub use search::{Found, PART, Search, Searched, search};
-/// What `src/report` calls it still.
-#[doc(hidden)]
-pub use space::DesignSpace as Wish;
 pub use space::{DesignSpace, MOST_RODS};
 pub use study::{Base, KnownDesign, Shown, Study};
 pub use values::MOST_VALUES;

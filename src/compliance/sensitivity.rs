@@ -55,7 +55,7 @@ pub struct Sensitivity {
 /// As [`RodModel::new`] and [`Rod::natural_modes`].
 pub fn sensitivities(rod: &Rod, physics: &Physics, contact_force: f64) -> Result<Vec<Sensitivity>> {
     let numbers = rod.numbers();
-    let frequencies = rod.first_frequency_slopes(&numbers)?.map(|(_, slopes)| slopes);
+    let frequencies = rod.natural_frequency_slopes(&numbers)?.map(|(_, slopes)| slopes);
     let all = in_parallel(numbers.len(), |k| {
         let number = &numbers[k];
         let Some(varied) = rod.derivative(number) else { return Ok(None) };

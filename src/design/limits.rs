@@ -2,6 +2,9 @@
 
 use super::figure::{Figure, Figures};
 
+/// Share of a limit by which rounding may miss it: a reach of 100 mm and 600 mm is 700 mm.
+const SLACK: f64 = 1e-9;
+
 /// A limit on a figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -37,9 +40,20 @@ impl Limit {
         }
     }
 
-    /// True where the rod keeps it; a figure that is not finite keeps nothing.
+    /// True where the rod keeps it, to rounding; what has no value keeps nothing.
     pub(super) fn is_kept(&self, figures: &Figures) -> bool {
-        self.excess(figures) <= 0.0
+        self.excess(figures) <= SLACK
+    }
+
+    /// What the limit would have to be for a figure of this value, in four digits, on the safe side.
+    pub fn relaxed_to(&self, value: f64) -> f64 {
+        let step = 10f64.powf(value.abs().log10().floor() - 3.0);
+        // what is a round number but for rounding stays one
+        let steps = value / step;
+        match self.is_least {
+            true => (steps * (1.0 + SLACK)).floor() * step,
+            false => (steps * (1.0 - SLACK)).ceil() * step,
+        }
     }
 }
 

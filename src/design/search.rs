@@ -82,8 +82,8 @@ pub fn search(space: &DesignSpace, searched: Searched, progress: &(dyn Fn(u64) +
 /// It may be done in parts too ([`Search::part`]), by others, and put together
 /// ([`Search::take_in`]): the front of the parts' fronts is the front, and all counts are sums of
 /// theirs.
-pub struct Search<'w> {
-    pub(super) space: &'w DesignSpace,
+pub struct Search<'s> {
+    pub(super) space: &'s DesignSpace,
     pub(super) searched: Searched,
     /// Rods that the whole search looks at, and those of them that this one does.
     count: u64,
@@ -92,12 +92,12 @@ pub struct Search<'w> {
     pub(super) total: Sum,
 }
 
-impl<'w> Search<'w> {
+impl<'s> Search<'s> {
     /// Before any rod.
     ///
     /// # Errors
     /// [`Error::Argument`] for more than [`MOST_RODS`](super::MOST_RODS) rods, or no samples.
-    pub fn new(space: &'w DesignSpace, searched: Searched) -> Result<Search<'w>> {
+    pub fn new(space: &'s DesignSpace, searched: Searched) -> Result<Search<'s>> {
         let all = space.combinations();
         let count = match searched {
             Searched::Samples(samples, _) => samples.min(all),
@@ -126,7 +126,7 @@ impl<'w> Search<'w> {
     /// # Errors
     /// As [`Search::new`]; [`Error::Argument`] for a part that begins or ends within what is looked
     /// at together ([`PART`]), or that is none of the search.
-    pub fn part(space: &'w DesignSpace, searched: Searched, part: Range<u64>) -> Result<Search<'w>> {
+    pub fn part(space: &'s DesignSpace, searched: Searched, part: Range<u64>) -> Result<Search<'s>> {
         let whole = Search::new(space, searched)?;
         let is_bound = |at: u64| at.is_multiple_of(PART) || at == whole.count;
         if part.is_empty() || part.end > whole.count || !is_bound(part.start) || !is_bound(part.end) {
@@ -245,16 +245,16 @@ impl<'w> Search<'w> {
 }
 
 /// What a task reuses from rod to rod.
-struct Task<'w> {
-    space: &'w DesignSpace,
+struct Task<'s> {
+    space: &'s DesignSpace,
     solver: TipSolver,
     rod: Option<(Rod, [usize; 2])>,
     /// The frequency is a goal, is a limit.
     swings: [bool; 2],
 }
 
-impl<'w> Task<'w> {
-    fn new(space: &'w DesignSpace) -> Self {
+impl<'s> Task<'s> {
+    fn new(space: &'s DesignSpace) -> Self {
         let is_frequency = |figure: Figure| figure == Figure::FirstFrequency;
         let swings = [
             space.goals.iter().any(|goal| is_frequency(goal.figure)),
@@ -295,7 +295,7 @@ impl<'w> Task<'w> {
     }
 
     fn judge(&mut self, index: u64, rod: &Rod, sum: &mut Sum) -> Result<()> {
-        let mut figures = Figures::of(rod, &mut self.solver)?;
+        let mut figures = Figures::of(rod, &mut self.solver);
         if self.space.goals.iter().any(|goal| goal.figure == Figure::Price) {
             figures.set(Figure::Price, self.space.price(&self.space.choice(index)));
         }

@@ -29,7 +29,7 @@ pub fn json(study: &Study) -> Value {
     let front: Vec<Value> =
         found.front.iter().enumerate().map(|(place, design)| front_json(study, place, design)).collect();
     let mut because = Map::new();
-    for (limit, count) in study.wish.limits.iter().zip(&found.broken) {
+    for (limit, count) in study.space.limits.iter().zip(&found.broken) {
         because.insert(limit.key.into(), (*count).into());
     }
     for (why, count) in Impossible::ALL.iter().zip(found.impossible).filter(|(_, count)| *count > 0) {
@@ -44,15 +44,15 @@ pub fn json(study: &Study) -> Value {
         })
     });
     json!({
-        "design": study.wish.file,
-        "combinations": study.wish.combinations(),
+        "design": study.space.file,
+        "combinations": study.space.combinations(),
         "evaluated": found.evaluated,
         "feasible": found.feasible,
-        "objectives": study.wish.goals.iter().map(goal_json).collect::<Vec<_>>(),
+        "objectives": study.space.goals.iter().map(goal_json).collect::<Vec<_>>(),
         "front": front,
         "infeasible_because": because,
         "relax": relaxed.collect::<Vec<_>>(),
-        "refined": study.refined.as_ref().map(|found| refined::json(&study.wish, found)),
+        "refined": study.refined.as_ref().map(|found| refined::json(&study.space, found)),
         "base": study.base.as_ref().map(|base| {
             let mut object = figures_json(&Design { index: 0, figures: base.figures });
             object.insert("rod".into(), base.rod.name.clone().into());
@@ -71,7 +71,7 @@ fn front_json(study: &Study, place: usize, design: &Design) -> Value {
     let mut object = Map::new();
     object.insert("rod".into(), rod_json(study, design.index));
     object.append(&mut figures_json(design));
-    object.insert("tubes".into(), study.wish.tubes_of(design.index).into());
+    object.insert("tubes".into(), study.space.tubes_of(design.index).into());
     if let Some(known) = known_at(study, place) {
         let interval = |figure: Figure| {
             let (value, half) = (design.figures.get(figure)?, half_of(known, figure)?);
@@ -156,7 +156,7 @@ fn what_counts(study: &Study) -> Section {
 
 /// The keys of a rod file.
 fn rod_json(study: &Study, index: u64) -> Value {
-    let text = study.wish.rod(index).ok().map(|rod| rod.to_toml(&[]));
+    let text = study.space.rod(index).ok().map(|rod| rod.to_toml(&[]));
     text.and_then(|text| toml::from_str(&text).ok()).unwrap_or(Value::Null)
 }
 
@@ -173,7 +173,7 @@ pub fn report(study: &Study) -> Report {
     }
     sections.push(Section::new("What was looked at", looked_at(study)));
     Report {
-        title: format!("Rods for {}", study.wish.file),
+        title: format!("Rods for {}", study.space.file),
         headline: headline(study),
         cards: overview::cards(study),
         warnings: overview::warnings(study),
@@ -195,7 +195,7 @@ pub fn headline(study: &Study) -> String {
             false => format!("None of {all} keeps all limits. One would do: relax {}.", relax.join(", or ")),
         };
     }
-    let spans = study.wish.goals.iter().map(|goal| {
+    let spans = study.space.goals.iter().map(|goal| {
         let values = || found.front.iter().filter_map(|design| design.figures.get(goal.figure));
         let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
         let (name, unit) = goal.figure.words();
@@ -217,13 +217,11 @@ fn verb(feasible: u64) -> String {
 
 /// A limit that would do, rounded to the safe side.
 fn needed(limit: &Limit, to: f64) -> String {
-    let step = 10f64.powf(to.abs().log10().floor() - 3.0);
-    let safe = if limit.is_least { (to / step).floor() } else { (to / step).ceil() } * step;
-    significant(safe, DIGITS)
+    significant(limit.relaxed_to(to), DIGITS)
 }
 
 fn front(study: &Study) -> Vec<Block> {
-    let goals = study.wish.goals.iter().map(|goal| {
+    let goals = study.space.goals.iter().map(|goal| {
         let (name, _) = goal.figure.words();
         format!("{} {name}", if goal.is_maximised { "larger" } else { "smaller" })
     });
@@ -255,7 +253,7 @@ fn front(study: &Study) -> Vec<Block> {
         let breaks = match base.broken.is_empty() {
             true => "It keeps all limits.".to_owned(),
             false => {
-                let broken = study.wish.limits.iter().filter(|limit| base.broken.contains(&limit.key));
+                let broken = study.space.limits.iter().filter(|limit| base.broken.contains(&limit.key));
                 format!("It breaks: {}.", broken.map(limit_words).collect::<Vec<_>>().join("; "))
             }
         };
@@ -339,7 +337,7 @@ fn nearest(study: &Study) -> Vec<Block> {
             needed(&relaxed.limit, relaxed.to),
             relaxed.limit.figure.words().1.to_owned(),
         ];
-        if let Ok(rod) = study.wish.rod(relaxed.design.index) {
+        if let Ok(rod) = study.space.rod(relaxed.design.index) {
             cells.extend(shape_cells(&rod));
         }
         table.row(cells);
@@ -349,7 +347,7 @@ fn nearest(study: &Study) -> Vec<Block> {
         blocks.push(Block::Table(table));
     }
     if let Some((design, worst)) = &nearest.all_limits {
-        let shape = study.wish.rod(design.index).map_or_else(
+        let shape = study.space.rod(design.index).map_or_else(
             |_| String::new(),
             |rod| {
                 format!(
@@ -377,7 +375,7 @@ fn looked_at(study: &Study) -> Vec<Block> {
          where it keeps all others.";
     let mut table =
         Table::new("infeasible", caption, vec![Column::text("because of"), Column::number("rods", "")]);
-    for (limit, count) in study.wish.limits.iter().zip(&found.broken) {
+    for (limit, count) in study.space.limits.iter().zip(&found.broken) {
         table.row(vec![limit_words(limit), count.to_string()]);
     }
     for (why, count) in Impossible::ALL.iter().zip(found.impossible).filter(|(_, count)| *count > 0) {
@@ -386,11 +384,11 @@ fn looked_at(study: &Study) -> Vec<Block> {
     let mut blocks = vec![Block::Paragraph(format!(
         "{} of {} were looked at, with tubes from a catalogue of {}; {} all limits.",
         found.evaluated,
-        count(study.wish.combinations(), "combination"),
-        study.wish.tubes.len(),
+        count(study.space.combinations(), "combination"),
+        study.space.tubes.len(),
         verb(found.feasible)
     ))];
-    if !study.wish.limits.is_empty() || found.impossible.iter().any(|count| *count > 0) {
+    if !study.space.limits.is_empty() || found.impossible.iter().any(|count| *count > 0) {
         blocks.push(Block::Table(table));
     }
     blocks

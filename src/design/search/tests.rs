@@ -44,7 +44,7 @@ fn the_search_is_that_of_looking_at_every_rod() {
         match space.rod(index) {
             Err(why) => impossible[why as usize] += 1,
             Ok(rod) => {
-                let figures = Figures::of(&rod, &mut solver).unwrap().with_frequency(&rod).unwrap();
+                let figures = Figures::of(&rod, &mut solver).with_frequency(&rod).unwrap();
                 let mut figures = figures;
                 figures.set(Figure::Price, space.price(&space.choice(index)));
                 if space.limits.iter().all(|limit| limit.is_kept(&figures)) {

@@ -21,7 +21,7 @@ use crate::units::{DEG, GRAM, MM};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawWish {
+struct RawSpace {
     geometry: RawGeometry,
     #[serde(default)]
     material: MaterialTable,
@@ -140,7 +140,7 @@ impl DesignSpace {
         catalogue: &dyn Fn(&str) -> Result<(String, String)>,
     ) -> Result<DesignSpace> {
         let toml = TomlText::new(file, text);
-        let raw: RawWish = toml.parse(REQUIRED)?;
+        let raw: RawSpace = toml.parse(REQUIRED)?;
         let geometry = &raw.geometry;
         let mut check = Check { toml, warnings: Vec::new() };
         let mut materials = built_in_materials();

@@ -91,6 +91,12 @@ impl Figures {
         (!value.is_nan()).then_some(value)
     }
 
+    /// The same but for one.
+    pub(super) fn with(mut self, figure: Figure, value: f64) -> Figures {
+        self.set(figure, value);
+        self
+    }
+
     pub(super) fn set(&mut self, figure: Figure, value: f64) {
         self.0[figure as usize] = value;
     }

@@ -21,7 +21,7 @@ use super::table::{Column, Table};
 use super::{Block, Report, Section};
 use crate::design::{Design, Figure, Figures, Goal, Impossible, Limit, Shown, Study};
 use crate::rod::NominalNumber;
-use crate::units::{MM, significant};
+use crate::units::significant;
 
 /// The JSON of `rodcal design rod --json`.
 pub fn json(study: &Study) -> Value {
@@ -52,6 +52,7 @@ pub fn json(study: &Study) -> Value {
         "front": front,
         "infeasible_because": because,
         "relax": relaxed.collect::<Vec<_>>(),
+        "nearest": nearest_json(study),
         "refined": study.refined.as_ref().map(|found| refined::json(&study.space, found)),
         "base": study.base.as_ref().map(|base| {
             let mut object = figures_json(&Design { index: 0, figures: base.figures });
@@ -61,6 +62,27 @@ pub fn json(study: &Study) -> Value {
             object
         }),
     })
+}
+
+/// The design that comes nearest to all limits together, and what each would have to be for it.
+fn nearest_json(study: &Study) -> Value {
+    let nearest = study.found.nearest.as_ref().and_then(|nearest| nearest.all_limits);
+    let Some((design, worst)) = nearest else { return Value::Null };
+    let needed = broken_by(study, &design).map(|(limit, value)| {
+        json!({ "constraint": limit.key, "stated": limit.value, "needed": value })
+    });
+    json!({
+        "rod": rod_json(study, design.index),
+        "beyond_percent": 100.0 * worst,
+        "constraints": needed.collect::<Vec<_>>(),
+    })
+}
+
+/// Limits that a design breaks, each with its figure.
+fn broken_by<'s>(study: &'s Study, design: &Design) -> impl Iterator<Item = (&'s Limit, f64)> {
+    let figures = design.figures;
+    let broken = study.space.limits.iter().filter(move |limit| !limit.is_kept(&figures));
+    broken.map(move |limit| (limit, figures.get(limit.figure).unwrap_or(f64::NAN)))
 }
 
 fn goal_json(goal: &Goal) -> Value {
@@ -187,13 +209,7 @@ pub fn headline(study: &Study) -> String {
     let found = &study.found;
     let all = count(found.evaluated, "rod");
     if found.front.is_empty() {
-        let relax = found.nearest.iter().flat_map(|nearest| &nearest.one_limit);
-        let relax: Vec<String> =
-            relax.map(|one| format!("{} to {}", one.limit.key, needed(&one.limit, one.to))).collect();
-        return match relax.is_empty() {
-            true => format!("None of {all} keeps all limits, and none would with only one of them given up."),
-            false => format!("None of {all} keeps all limits. One would do: relax {}.", relax.join(", or ")),
-        };
+        return nothing_fits(study, &all);
     }
     let spans = study.space.goals.iter().map(|goal| {
         let values = || found.front.iter().filter_map(|design| design.figures.get(goal.figure));
@@ -209,6 +225,30 @@ pub fn headline(study: &Study) -> String {
         count => format!("{count} of them are bettered by none"),
     };
     format!("Of {all} {} all limits, and {front}: {}.", verb(found.feasible), spans.join(", "))
+}
+
+/// What would have to give where no rod keeps all limits.
+fn nothing_fits(study: &Study, all: &str) -> String {
+    let relax = |(limit, to): (&Limit, f64)| format!("{} to {}", limit.key, needed(limit, to));
+    let nearest = study.found.nearest.as_ref();
+    let one_limit = nearest.iter().flat_map(|nearest| &nearest.one_limit);
+    let one_limit: Vec<String> = one_limit.map(|one| relax((&one.limit, one.to))).collect();
+    if !one_limit.is_empty() {
+        return format!("None of {all} keeps all limits. One would do: relax {}.", one_limit.join(", or "));
+    }
+    match nearest.and_then(|nearest| nearest.all_limits) {
+        Some((design, _)) => format!(
+            "None of {all} keeps all limits, and none would with only one of them given up. The nearest needs several at \
+             once: relax {}.",
+            broken_by(study, &design).map(relax).collect::<Vec<_>>().join(" and ")
+        ),
+        None => {
+            let reasons = Impossible::ALL.iter().zip(study.found.impossible).filter(|(_, count)| *count > 0);
+            let reasons: Vec<String> =
+                reasons.map(|(why, count)| format!("{} ({count})", why.words())).collect();
+            format!("None of {all} can be built: {}.", reasons.join("; "))
+        }
+    }
 }
 
 fn verb(feasible: u64) -> String {
@@ -347,24 +387,35 @@ fn nearest(study: &Study) -> Vec<Block> {
         blocks.push(Block::Table(table));
     }
     if let Some((design, worst)) = &nearest.all_limits {
-        let shape = study.space.rod(design.index).map_or_else(
-            |_| String::new(),
-            |rod| {
-                format!(
-                    " (L1 {} mm, L2 {} mm, tube {})",
-                    significant(rod.l1 / MM, 4),
-                    significant(rod.l2 / MM, 4),
-                    tube_of(study, design)
-                )
-            },
+        let mut heads = vec![
+            Column::text("limit"),
+            Column::in_row_unit("stated"),
+            Column::in_row_unit("this rod has"),
+            Column::units(),
+        ];
+        heads.extend(shape_columns());
+        let caption = format!(
+            "The design whose worst limit is broken by the smallest share, {} %: tube {}.",
+            significant(100.0 * worst, 2),
+            tube_of(study, design)
         );
-        blocks.push(Block::Paragraph(format!(
-            "The design that breaks its worst limit by the smallest share{shape} is {} % beyond it.",
-            significant(100.0 * worst, 2)
-        )));
+        let mut table = Table::new("nearest", caption, heads);
+        for (limit, value) in broken_by(study, design) {
+            let mut cells = vec![
+                limit_name(limit),
+                significant(limit.value, DIGITS),
+                significant(value, DIGITS),
+                limit.figure.words().1.to_owned(),
+            ];
+            if let Ok(rod) = study.space.rod(design.index) {
+                cells.extend(shape_cells(&rod));
+            }
+            table.row(cells);
+        }
+        blocks.push(Block::Table(table));
     }
     if blocks.is_empty() {
-        blocks.push(Block::Paragraph("No combination is a rod.".into()));
+        blocks.push(Block::Paragraph("No combination can be built.".into()));
     }
     blocks
 }

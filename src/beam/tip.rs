@@ -95,13 +95,7 @@ impl<T: Number> TipSolver<T> {
 
     /// One part of the rod between two stations, cut where something sits; `size` is its length, or
     /// its angle, which `lay` gets piece by piece.
-    fn part(
-        &mut self,
-        rod: &Rod<T>,
-        [from, to]: [T; 2],
-        size: T,
-        mut lay: impl FnMut(&mut TipSolver<T>, T),
-    ) {
+    fn part(&mut self, rod: &Rod<T>, [from, to]: [T; 2], size: T, mut lay: impl FnMut(&mut TipSolver<T>, T)) {
         let is_inside =
             |at: T| at.value() > from.value() + SAME_STATION && at.value() < to.value() - SAME_STATION;
         let (mut last, mut left) = (from, size);
@@ -168,7 +162,8 @@ mod tests {
         let plain = Rod::read("rods/2.toml".as_ref()).unwrap();
         let plain = Rod { masses: Vec::new(), joints: Vec::new(), ..plain };
         let bent = plain.clone().with_bend(0.06, BendFlexibility::VonKarman);
-        let joint = |name: &str, station: f64| Joint { name: name.into(), station, bending: 1e-4, torsion: 2e-4 };
+        let joint =
+            |name: &str, station: f64| Joint { name: name.into(), station, bending: 1e-4, torsion: 2e-4 };
         let rods = [
             plain.clone(),
             plain.clone().with_angle(120.0 * DEG),

@@ -102,7 +102,9 @@ impl Impossible {
             Impossible::BendDoesNotFit => "the bend does not fit between the pipes",
             Impossible::BendTighterThanTube => "the bend is tighter than the tube is thick",
             Impossible::StationBeyondTip => "a mass or a joint would sit beyond the tip",
-            Impossible::CornerDoesNotFit => "a pipe is too short for the corner: one would end within the other",
+            Impossible::CornerDoesNotFit => {
+                "a pipe is too short for the corner: one would end within the other"
+            }
         }
     }
 }

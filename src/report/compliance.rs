@@ -216,9 +216,9 @@ fn swing(study: &Study) -> Option<Section> {
     }
     let mut columns = vec![Column::text("mode"), Column::text("swings"), Column::number("frequency", "Hz")];
     columns.extend(
-        damping.iter().map(|ratio| {
-            Column::number(format!("to 2 % at {} % damping", (1e5 * ratio).round() / 1e3), "s")
-        }),
+        damping
+            .iter()
+            .map(|ratio| Column::number(format!("to 2 % at {} % damping", (1e5 * ratio).round() / 1e3), "s")),
     );
     let caption = format!("Rod {}: slowest natural modes, clamped at the flange.", rod.name);
     let mut table = Table::new("natural-frequencies", caption, columns);
@@ -233,7 +233,8 @@ fn swing(study: &Study) -> Option<Section> {
     };
     for (k, mode) in modes.iter().enumerate() {
         let mut cells = vec![(k + 1).to_string(), direction(mode).to_owned(), significant(mode.frequency, 4)];
-        cells.extend(damping.iter().map(|ratio| significant(settling_time(mode.frequency, *ratio, SHARE), 2)));
+        cells
+            .extend(damping.iter().map(|ratio| significant(settling_time(mode.frequency, *ratio, SHARE), 2)));
         table.row(cells);
     }
     // a tip that swings by 1 mm

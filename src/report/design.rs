@@ -68,9 +68,8 @@ pub fn json(study: &Study) -> Value {
 fn nearest_json(study: &Study) -> Value {
     let nearest = study.found.nearest.as_ref().and_then(|nearest| nearest.all_limits);
     let Some((design, worst)) = nearest else { return Value::Null };
-    let needed = broken_by(study, &design).map(|(limit, value)| {
-        json!({ "constraint": limit.key, "stated": limit.value, "needed": value })
-    });
+    let needed = broken_by(study, &design)
+        .map(|(limit, value)| json!({ "constraint": limit.key, "stated": limit.value, "needed": value }));
     json!({
         "rod": rod_json(study, design.index),
         "beyond_percent": 100.0 * worst,

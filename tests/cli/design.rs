@@ -162,7 +162,11 @@ fn where_nothing_fits_it_says_what_would() {
     sandbox.write("design.toml", &DESIGN.replace("gamma_deg", "bend_radius_mm = 700\ngamma_deg"));
     let answer = sandbox.run("design rod design.toml");
     assert_eq!(answer.status, Some(1));
-    assert!(answer.stdout.contains("can be built: the bend does not fit between the pipes"), "{}", answer.stdout);
+    assert!(
+        answer.stdout.contains("can be built: the bend does not fit between the pipes"),
+        "{}",
+        answer.stdout
+    );
 }
 
 #[test]

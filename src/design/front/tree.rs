@@ -180,10 +180,7 @@ fn split(entries: Vec<Entry>, scale: &Costs) -> Vec<Tree> {
     let mut centres: Vec<Costs> = entries.iter().take(1).map(|entry| entry.costs).collect();
     while centres.len() < BRANCHES {
         let far = |entry: &Entry| {
-            centres
-                .iter()
-                .map(|centre| distance(centre, &entry.costs, scale))
-                .fold(f64::INFINITY, f64::min)
+            centres.iter().map(|centre| distance(centre, &entry.costs, scale)).fold(f64::INFINITY, f64::min)
         };
         let Some(next) = entries.iter().max_by(|a, b| far(a).total_cmp(&far(b))) else { break };
         centres.push(next.costs);

@@ -19,7 +19,8 @@ pub(super) fn seen(all: &Measurements) -> Option<DMatrix<f64>> {
     let everything: Vec<usize> = (0..all.len()).collect();
     let norms = all.column_norms();
     let mut information = all.information(&everything, &DMatrix::zeros(columns, columns));
-    for ((i, k), entry) in (0..columns).flat_map(|k| (0..columns).map(move |i| (i, k))).zip(information.iter_mut())
+    for ((i, k), entry) in
+        (0..columns).flat_map(|k| (0..columns).map(move |i| (i, k))).zip(information.iter_mut())
     {
         *entry /= norms[i] * norms[k];
     }
@@ -29,7 +30,8 @@ pub(super) fn seen(all: &Measurements) -> Option<DMatrix<f64>> {
         return None;
     }
     // in the units of the unknowns
-    let unseen = DMatrix::from_fn(columns, unseen.len(), |i, k| eigen.eigenvectors[(i, unseen[k])] / norms[i]);
+    let unseen =
+        DMatrix::from_fn(columns, unseen.len(), |i, k| eigen.eigenvectors[(i, unseen[k])] / norms[i]);
     let unseen = unseen.qr().q();
     let others = (DMatrix::identity(columns, columns) - &unseen * unseen.transpose()).symmetric_eigen();
     let seen: Vec<usize> = (0..columns).filter(|&k| others.eigenvalues[k] > 0.5).collect();

@@ -166,7 +166,8 @@ impl<'c> PoseStudy<'c> {
         let (measurements, before) = scaled(&all, &free, &known, &wanted, forecaster.budget.noise);
         let columns = measurements.columns();
         let unseen_combinations = all.rows().first().map_or(0, |block| block.ncols()) - columns;
-        let criterion = wanted.criterion.of_design(columns, &forecaster.weight(columns + unseen_combinations));
+        let criterion =
+            wanted.criterion.of_design(columns, &forecaster.weight(columns + unseen_combinations));
         let numerical = || Error::Numerical {
             what: "the choice of poses",
             why: "the information of the poses is not positive definite".into(),

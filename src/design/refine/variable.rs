@@ -56,11 +56,7 @@ pub(super) fn lengths(space: &DesignSpace, rod: &Rod) -> Vec<Variable> {
         let [from, high] = space.ranges[k]?;
         // of what may be nothing, the least that is something
         let low = if from > 0.0 { from } else { least.min(high) };
-        (low < high && now > 0.0).then(|| Variable {
-            moves: vec![(number, 1.0)],
-            low,
-            high,
-        })
+        (low < high && now > 0.0).then(|| Variable { moves: vec![(number, 1.0)], low, high })
     };
     all.into_iter().enumerate().filter_map(varies).collect()
 }

@@ -120,7 +120,15 @@ fn pipes_that_would_end_within_each_other_are_no_rods() {
         .collect();
     possible.sort_by(|a, b| a.partial_cmp(b).unwrap());
     // tubes of 40 mm: at 30° the corner takes 74.6 mm of each pipe, at 90° 20 mm, straight on nothing
-    let expected = [(30.0, 100.0), (90.0, 21.0), (90.0, 100.0), (180.0, 5.0), (180.0, 19.0), (180.0, 21.0), (180.0, 100.0)];
+    let expected = [
+        (30.0, 100.0),
+        (90.0, 21.0),
+        (90.0, 100.0),
+        (180.0, 5.0),
+        (180.0, 19.0),
+        (180.0, 21.0),
+        (180.0, 100.0),
+    ];
     let found: Vec<(f64, f64)> =
         possible.iter().map(|(gamma, l1, _)| (gamma.to_degrees().round(), (1e3 * l1).round())).collect();
     assert_eq!(found, expected);

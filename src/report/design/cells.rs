@@ -20,8 +20,9 @@ pub fn figures_json(design: &Design) -> Map<String, Value> {
 pub fn columns(study: &Study) -> Vec<Figure> {
     let mut figures: Vec<Figure> = study.space.goals.iter().map(|goal| goal.figure).collect();
     let more = [Figure::CRod, Figure::Mass, Figure::FirstFrequency, Figure::Reach];
-    figures
-        .extend(more.into_iter().filter(|figure| study.space.goals.iter().all(|goal| goal.figure != *figure)));
+    figures.extend(
+        more.into_iter().filter(|figure| study.space.goals.iter().all(|goal| goal.figure != *figure)),
+    );
     figures
 }
 

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::cells::{DIGITS, columns, figures_json, shape_cells, shape_columns};
-use crate::design::{Better, Design, Figures, Goal, Refined, Study, DesignSpace};
+use crate::design::{Better, Design, DesignSpace, Figures, Goal, Refined, Study};
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};
 use crate::rod::{Pipe, Rod};

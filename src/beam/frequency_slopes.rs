@@ -135,7 +135,8 @@ mod tests {
                 let (frequency, slopes) = found.unwrap().unwrap();
                 for (number, slope) in numbers.iter().zip(slopes) {
                     let expected = difference(&rod, number, elements);
-                    // of 1 % of the number, to 1e-6 of what that does, and to 1e-10 of the frequency
+                    // of 1 % of the number, to 1e-6 of what that does, and to 1e-10 of the
+                    // frequency
                     let size = 0.01 * rod.value_of(number).unwrap().abs().max(1e-6);
                     let off = (slope - expected).abs() * size;
                     assert!(

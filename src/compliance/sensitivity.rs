@@ -221,17 +221,17 @@ mod tests {
         let index = |rod: Rod| Compliance::of_model(&rod, &Physics::WHOLE, 1).unwrap().index(2.0);
         let (e, nu) = (200e9, 0.29);
         let all = sensitivities(&with(e, nu), &Physics::WHOLE, 2.0).unwrap();
-        let of = |number: NominalNumber| all.iter().find(|one| one.number == number);
+        let found_by = |number: NominalNumber| all.iter().find(|one| one.number == number);
         let by_e = (index(with(e * 1.0001, nu)) - index(with(e * 0.9999, nu))) / (2e-4 * e);
         let by_nu = (index(with(e, nu + 1e-4)) - index(with(e, nu - 1e-4))) / 2e-4;
         let name = || "steel".to_owned();
         for (number, expected) in
             [(NominalNumber::YoungsModulus(name()), by_e), (NominalNumber::PoissonRatio(name()), by_nu)]
         {
-            let found = of(number.clone()).unwrap().index;
+            let found = found_by(number.clone()).unwrap().index;
             assert!((found / expected - 1.0).abs() < 1e-6, "{number}: {found} {expected}");
         }
-        assert!(of(NominalNumber::ShearModulus(name())).is_none());
+        assert!(found_by(NominalNumber::ShearModulus(name())).is_none());
     }
 
     /// A sleeve and its mass are one thing: they move together, and are named once.

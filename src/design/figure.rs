@@ -151,6 +151,16 @@ impl Figures {
     }
 }
 
+/// A combination and its figures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Design {
+    /// Its number among all combinations.
+    pub index: u64,
+    /// Its figures.
+    pub figures: Figures,
+}
+
 /// What [`Figures::of`] has, with whatever the numbers of the rod carry.
 fn numbers<T: Number>(rod: &Rod<T>, solver: &mut TipSolver<T>) -> [T; 8] {
     let [force, weight] = solver.solve(rod);

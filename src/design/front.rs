@@ -7,17 +7,7 @@
 mod tree;
 
 use self::tree::{Costs, Entry, Tree};
-use super::figure::{Figures, Goal};
-
-/// A combination and its figures.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct Design {
-    /// Its number among all combinations.
-    pub index: u64,
-    /// Its figures.
-    pub figures: Figures,
-}
+use super::figure::{Design, Figures, Goal};
 
 /// Bits of a number that comparisons leave out: 32 of its 52 stay, which is a share of 2·10⁻¹⁰.
 const LEFT_OUT: u32 = 20;
@@ -32,7 +22,7 @@ pub struct Front {
 impl Front {
     /// An empty front for these goals.
     pub fn new(goals: &[Goal]) -> Front {
-        Front { goals: goals.to_vec(), designs: Tree::of(Vec::new()) }
+        Front { goals: goals.to_vec(), designs: Tree::leaf(Vec::new()) }
     }
 
     /// Takes `design` in, unless one that is known betters it, and puts out those that it betters.
@@ -151,7 +141,8 @@ mod tests {
         }
     }
 
-    /// Many designs, so that the tree branches, and few values of some goals, so that there are ties.
+    /// Many designs, so that the tree branches, and few values of some goals, so that there are
+    /// ties.
     #[test]
     fn a_front_of_many_goals_is_that_of_comparing_all_with_all() {
         let figures = [Figure::CRod, Figure::Mass, Figure::Reach, Figure::Moment, Figure::Price];

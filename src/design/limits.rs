@@ -45,7 +45,8 @@ impl Limit {
         self.excess(figures) <= SLACK
     }
 
-    /// What the limit would have to be for a figure of this value, in four digits, on the safe side.
+    /// What the limit would have to be for a figure of this value, in four digits, on the safe
+    /// side.
     pub fn relaxed_to(&self, value: f64) -> f64 {
         if value == 0.0 || !value.is_finite() {
             return value;
@@ -145,9 +146,9 @@ mod tests {
     #[test]
     fn what_is_beyond_a_limit_breaks_it_and_is_rounded_to_the_safe_side() {
         let limit = |is_least| Limit { key: "max_mass_g", figure: Figure::Mass, value: 700.0, is_least };
-        let of = |mass: f64| Figures([f64::NAN; 8]).with(Figure::Mass, mass);
-        assert!(!limit(false).is_kept(&of(700.001)) && !limit(true).is_kept(&of(699.999)));
-        assert!(!limit(false).is_kept(&of(f64::NAN)));
+        let weighing = |mass: f64| Figures([f64::NAN; 8]).with(Figure::Mass, mass);
+        assert!(!limit(false).is_kept(&weighing(700.001)) && !limit(true).is_kept(&weighing(699.999)));
+        assert!(!limit(false).is_kept(&weighing(f64::NAN)));
         assert!((limit(false).relaxed_to(712.34) - 712.4).abs() < 1e-9);
         assert!((limit(true).relaxed_to(0.071_239) - 0.071_23).abs() < 1e-12);
         assert_eq!(limit(true).relaxed_to(0.0), 0.0);

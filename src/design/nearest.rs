@@ -1,7 +1,6 @@
 //! What to give up where no design keeps all limits.
 
-use super::figure::Figures;
-use super::front::Design;
+use super::figure::{Design, Figures};
 use super::limits::Limit;
 
 /// One limit that is in the way alone: all others can be kept.

@@ -4,8 +4,7 @@
 
 use std::ops::Range;
 
-use super::figure::Figures;
-use super::front::Design;
+use super::figure::{Design, Figures};
 use super::nearest::{Nearest, Relaxed};
 use super::search::{Search, Searched};
 use super::space::DesignSpace;

@@ -5,8 +5,8 @@ mod tests;
 
 use std::ops::Range;
 
-use super::figure::{Figure, Figures};
-use super::front::{Design, Front};
+use super::figure::{Design, Figure, Figures};
+use super::front::Front;
 use super::limits::{Impossible, Limit};
 use super::nearest::Nearest;
 use super::space::DesignSpace;

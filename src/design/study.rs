@@ -1,7 +1,7 @@
 //! A search with everything that is to be said of its front.
 
-use super::figure::{Figure, Figures, Goal};
-use super::front::{Design, betters};
+use super::figure::{Design, Figure, Figures, Goal};
+use super::front::betters;
 use super::intervals::{Intervals, indistinguishable};
 use super::refine::{Refined, refine, weights};
 use super::search::{Found, Searched, search};

@@ -5,7 +5,7 @@
 //! hangs below it. Where its least costs are not as good as those of a design in every goal nothing
 //! below it betters that, and where its largest costs are better everything below does.
 
-use crate::design::front::Design;
+use crate::design::figure::Design;
 
 /// Goals at most: one for each figure.
 pub(super) const GOALS: usize = 8;
@@ -50,7 +50,7 @@ fn betters(a: &Costs, b: &Costs) -> bool {
 
 impl Tree {
     /// A leaf.
-    pub(super) fn of(entries: Vec<Entry>) -> Tree {
+    pub(super) fn leaf(entries: Vec<Entry>) -> Tree {
         let [mut least, mut largest] = [[f64::INFINITY; GOALS], [f64::NEG_INFINITY; GOALS]];
         entries.iter().for_each(|entry| widen(&mut least, &mut largest, [&entry.costs; 2]));
         Tree { least, largest, count: entries.len(), below: Below::Leaf(entries) }
@@ -92,13 +92,13 @@ impl Tree {
             return;
         }
         if betters(costs, &self.least) {
-            *self = Tree::of(Vec::new());
+            *self = Tree::leaf(Vec::new());
             return;
         }
         match &mut self.below {
             Below::Leaf(entries) => {
                 entries.retain(|entry| !betters(costs, &entry.costs));
-                *self = Tree::of(std::mem::take(entries));
+                *self = Tree::leaf(std::mem::take(entries));
             }
             Below::Branches(branches) => {
                 branches.iter_mut().for_each(|branch| branch.prune(costs));
@@ -139,7 +139,7 @@ impl Tree {
     }
 
     fn joined(branches: Vec<Tree>) -> Tree {
-        let mut tree = Tree::of(Vec::new());
+        let mut tree = Tree::leaf(Vec::new());
         for branch in &branches {
             widen(&mut tree.least, &mut tree.largest, [&branch.least, &branch.largest]);
             tree.count += branch.count;
@@ -191,5 +191,5 @@ fn split(entries: Vec<Entry>, scale: &Costs) -> Vec<Tree> {
         let nearest = (0..centres.len()).min_by(|&a, &b| far(a).total_cmp(&far(b)));
         about[nearest.unwrap_or_default()].push(entry);
     }
-    about.into_iter().filter(|entries| !entries.is_empty()).map(Tree::of).collect()
+    about.into_iter().filter(|entries| !entries.is_empty()).map(Tree::leaf).collect()
 }

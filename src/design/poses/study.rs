@@ -274,7 +274,7 @@ fn scaled(
     let units: Vec<f64> = free.iter().map(|&parameter| Planned::unit(parameter)).collect();
     let (measurements, _) = in_noise(all, &units, crate::units::MM, crate::units::MM);
     let measurements = match seen(&measurements) {
-        Some(basis) => measurements.of(&basis),
+        Some(basis) => measurements.in_basis(&basis),
         None => measurements,
     };
     let norms = measurements.column_norms();

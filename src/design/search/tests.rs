@@ -119,7 +119,8 @@ fn pipes_that_would_end_within_each_other_are_no_rods() {
         .map(|rod| (rod.gamma, rod.l1, rod.pipe1.section.height()))
         .collect();
     possible.sort_by(|a, b| a.partial_cmp(b).unwrap());
-    // tubes of 40 mm: at 30° the corner takes 74.6 mm of each pipe, at 90° 20 mm, straight on nothing
+    // tubes of 40 mm: at 30° the corner takes 74.6 mm of each pipe, at 90° 20 mm, straight on
+    // nothing
     let expected = [
         (30.0, 100.0),
         (90.0, 21.0),

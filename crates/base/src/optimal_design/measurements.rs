@@ -59,7 +59,7 @@ impl Measurements {
 
     /// The same measurements of other unknowns: each of the old ones is a sum of these, a row of
     /// `basis`.
-    pub fn of(&self, basis: &DMatrix<f64>) -> Measurements {
+    pub fn in_basis(&self, basis: &DMatrix<f64>) -> Measurements {
         let columns = basis.ncols();
         let mut rows = Vec::with_capacity(3 * self.len() * columns);
         for row in self.rows.chunks(self.columns.max(1)) {

@@ -114,8 +114,8 @@ mod tests {
     use crate::rig::{self, Options};
     use crate::statistics::Random;
 
-    /// Beside what a fit then says: the mean width of 60 simulated recordings, of one repeat, of two
-    /// and of more.
+    /// Beside what a fit then says: the mean width of 60 simulated recordings, of one repeat, of
+    /// two and of more.
     #[test]
     fn the_interval_is_as_wide_as_a_fit_then_says() {
         let rod = Rod::read("rods/5.toml".as_ref()).unwrap();

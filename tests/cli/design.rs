@@ -149,7 +149,8 @@ fn where_nothing_fits_it_says_what_would() {
     // two at once, each by name with what it would have to be
     let two = DESIGN.replace("= 900", "= 10").replace("min_first_frequency_hz = 20", "min_reach_mm = 5000");
     sandbox.write("design.toml", &two);
-    let said = sandbox.run("design rod design.toml").stdout;
+    let in_one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = in_one_line(&sandbox.run("design rod design.toml").stdout);
     assert!(said.contains("The nearest needs several at once: relax max_mass_g to"), "{said}");
     assert!(said.contains("and min_reach_mm to"), "{said}");
     let json = sandbox.run("design rod design.toml --json").json();
@@ -163,7 +164,7 @@ fn where_nothing_fits_it_says_what_would() {
     let answer = sandbox.run("design rod design.toml");
     assert_eq!(answer.status, Some(1));
     assert!(
-        answer.stdout.contains("can be built: the bend does not fit between the pipes"),
+        in_one_line(&answer.stdout).contains("can be built: the bend does not fit between the pipes"),
         "{}",
         answer.stdout
     );

@@ -33,14 +33,14 @@ def design(rods: int) -> dict[str, Any]:
     }
 
 
-def sweep(client: Client, wish: dict[str, Any], rods_per_task: int) -> rodcal.results.RodDesignResult:
+def sweep(client: Client, space: dict[str, Any], rods_per_task: int) -> rodcal.results.RodDesignResult:
     """The front; what it took is said."""
 
     def used() -> tuple[float, float, float]:
         return time.monotonic(), sum(client.run(time.process_time).values()), time.process_time()
 
     before = used()
-    found = distributed.design_rod(client, wish, rods_per_task=rods_per_task, progress=True)
+    found = distributed.design_rod(client, space, rods_per_task=rods_per_task, progress=True)
     seconds, of_workers, here = (after - first for after, first in zip(used(), before))
     threads = sum(client.nthreads().values())
     print(
@@ -57,11 +57,11 @@ def main() -> None:
     arguments.add_argument("--rods-per-task", type=int, default=262_144)
     arguments.add_argument("--scheduler", help="address of a cluster, in place of processes here")
     asked = arguments.parse_args()
-    wish = design(asked.rods)
+    space = design(asked.rods)
 
     if asked.scheduler:
         with Client(asked.scheduler) as client:
-            sweep(client, wish, asked.rods_per_task)
+            sweep(client, space, asked.rods_per_task)
         return
 
     fronts = []
@@ -71,9 +71,9 @@ def main() -> None:
         with dask.config.set(one_thread):
             cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
         with cluster, Client(cluster) as client:
-            fronts.append(sweep(client, wish, asked.rods_per_task))
+            fronts.append(sweep(client, space, asked.rods_per_task))
 
-    alone = rodcal.design_rod(wish)
+    alone = rodcal.design_rod(space)
     assert all(found.to_dict() == alone.to_dict() for found in fronts)
     print(f"front of {len(alone.front)} designs: the same, to the last digit, as of one process")
 

@@ -38,7 +38,8 @@ pub struct Answer {
     pub report: Report,
     /// Names and contents of what belongs to the answer beside its report: rods, robots, poses.
     pub files: Vec<(String, Vec<u8>)>,
-    /// Exit status of the command: 1 where a diagnosis found a mismatch or a fit is not plausible.
+    /// Exit status of the command: 1 where a diagnosis found a mismatch, a fit is not plausible or
+    /// no design keeps all limits.
     pub status: u8,
 }
 

@@ -12,13 +12,14 @@
 //! - [`Chain`]: nodes and elements, built piece by piece in any direction in space.
 //! - [`Response`]: displacement and rotation of every node, from [`Chain::solve`], which checks
 //!   itself.
-//! - [`TipSolver`]: the tip of very many rods, without a mesh.
+//! - [`TipSolver`]: the tip of very many rods, and about how fast they swing, without a mesh.
 //! - [`NaturalMode`]: how fast a rod swings, and in which shape.
 //! - [`RodModel`]: a [`crate::rod::Rod`] as a chain, with nodes wherever something sits or is read.
 
 mod chain;
 mod check;
 mod element;
+mod estimate;
 mod frequency_slopes;
 mod large;
 mod model;

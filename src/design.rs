@@ -35,10 +35,10 @@ mod study;
 mod values;
 
 pub use catalogue::{BUILT_IN, Tube, built_in, built_in_materials};
-pub use figure::{Figure, Figures, Goal};
+pub use figure::{Design, Figure, Figures, Goal};
 pub use for_robot::{ForRobot, Proxy, Ranked, for_robot};
 pub use forecast::{Budget, Forecast, Forecaster, Part, Unseen, Where};
-pub use front::{Design, Front};
+pub use front::Front;
 pub use intervals::{Intervals, indistinguishable};
 pub use limits::{Impossible, Limit};
 pub use nearest::{Nearest, Relaxed};
@@ -49,9 +49,6 @@ pub use poses::{
 pub use refine::{Better, Refined, refine, weights};
 pub use rods_and_modes::{RodForecast, rods_and_modes};
 pub use search::{Found, PART, Search, Searched, search};
-/// What `src/report` calls it still.
-#[doc(hidden)]
-pub use space::DesignSpace as Wish;
 pub use space::{DesignSpace, MOST_RODS};
 pub use study::{Base, KnownDesign, Shown, Study};
 pub use values::MOST_VALUES;

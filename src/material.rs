@@ -19,6 +19,8 @@ pub struct Material<T = f64> {
     /// Poisson's ratio ν, contraction across the pipe per extension along it, dimensionless. Only
     /// the shear coefficient depends on it.
     pub poisson_ratio: T,
+    /// True where G was stated by E and ν, and changes with them.
+    pub is_shear_modulus_derived: bool,
     /// Stress up to which it springs back, Pa, where it is stated.
     pub yield_strength: Option<T>,
     /// What the section's shear coefficient is multiplied with, dimensionless; 1 unless stated.
@@ -77,7 +79,8 @@ impl Material {
     /// ```
     pub fn isotropic(name: &str, youngs_modulus: f64, poisson_ratio: f64, density: f64) -> Self {
         let shear_modulus = youngs_modulus / (2.0 * (1.0 + poisson_ratio));
-        Material::anisotropic(name, youngs_modulus, shear_modulus, poisson_ratio, density)
+        let material = Material::anisotropic(name, youngs_modulus, shear_modulus, poisson_ratio, density);
+        Material { is_shear_modulus_derived: true, ..material }
     }
 
     /// The material with Young's and shear moduli (Pa) and density (kg/m³).
@@ -117,6 +120,7 @@ impl Material {
             shear_modulus,
             density,
             poisson_ratio,
+            is_shear_modulus_derived: false,
             yield_strength: None,
             shear_coefficient_factor: 1.0,
             standard_uncertainty: MaterialUncertainty::ISOTROPIC,

@@ -23,7 +23,7 @@ from typing import Any
 from . import _rodcal
 from ._errors import Error, FileError, InputError, warn
 from ._progress import Progress, Told
-from .functions import CampaignLike, CompensationMode, RodLike, Weights, wish_of
+from .functions import CampaignLike, CompensationMode, RodLike, Weights, space_of
 from .inputs import Campaign, PathLike, Table, as_campaign, as_rod
 from .results import CalibrationResult, ComparisonResult, RodDesignResult
 
@@ -63,8 +63,8 @@ def design_rod(
     a minute of one processor. What follows the search (``refine``, the ranking for a robot) is done
     here.
     """
-    wish = wish_of(design, catalogue)
-    text, tubes, rods, unit = _rodcal.design_parts(wish, samples, seed)
+    space = space_of(design, catalogue)
+    text, tubes, rods, unit = _rodcal.design_parts(space, samples, seed)
     size = unit * -(-_positive("rods_per_task", rods_per_task) // unit)
     native = None if campaign is None else as_campaign(campaign, plan=True)._native
     other = None if base is None else as_rod(base)._native
@@ -72,7 +72,7 @@ def design_rod(
         shared = _shared(client, (text, tubes))
         looked_at = _in_order(client, _design_part, shared, (samples, seed), _parts(rods, size), tell, rods)
         found = ((first, last, kept) for (first, last), kept in looked_at)
-        answer = _rodcal.design_rod(wish, other, samples, refine, refine_goal, seed, native, count, found, None)
+        answer = _rodcal.design_rod(space, other, samples, refine, refine_goal, seed, native, count, found, None)
     warn(answer.warnings)
     return RodDesignResult(answer)
 

@@ -309,16 +309,16 @@ def design_rod(
     >>> result.front[0].c_rod_um < result.front[-1].c_rod_um, result.evaluated > result.feasible
     (True, True)
     """
-    wish = wish_of(design, catalogue)
+    space = space_of(design, catalogue)
     native = None if campaign is None else as_campaign(campaign, plan=True)._native
     other = None if base is None else as_rod(base)._native
     with Told(progress, "looking at rods") as tell:
-        answer = _rodcal.design_rod(wish, other, samples, refine, refine_goal, seed, native, count, None, tell)
+        answer = _rodcal.design_rod(space, other, samples, refine, refine_goal, seed, native, count, None, tell)
     warn(answer.warnings)
     return RodDesignResult(answer)
 
 
-def wish_of(
+def space_of(
     design: Mapping[str, Any] | PathLike, catalogue: Table | None
 ) -> str | tuple[str, str | None]:
     """A design file's name, or the text of a design with that of its catalogue."""

@@ -55,11 +55,11 @@ pub fn design_part(
 }
 
 /// Takes in the parts of a search: `parts` gives first, last and text of each, in order.
-pub fn take_in<'w>(
+pub fn take_in<'s>(
     py: Python<'_>,
-    search: &mut Search<'w>,
+    search: &mut Search<'s>,
     searched: Searched,
-    space: &'w DesignSpace,
+    space: &'s DesignSpace,
     parts: &Bound<'_, PyAny>,
 ) -> PyResult<()> {
     for part in parts.try_iter()? {

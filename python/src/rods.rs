@@ -46,6 +46,7 @@ pub fn compliance(
         contact_force,
         load_station: load_station_mm.map(|mm| mm * MM),
         read_station: read_station_mm.map(|mm| mm * MM),
+        ..ComplianceOptions::default()
     };
     let rod = rod.get().rod.clone();
     run(py, None, Progress::default(), |_| answer::compliance(rod, &options)).map(Answer)

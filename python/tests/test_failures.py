@@ -164,7 +164,7 @@ def test_other_threads_run_meanwhile() -> None:
 
 LONG = {
     "compare": f"rodcal.compare({TX90!r}, draws=100_000)",
-    "design_rod": "rodcal.design_rod(wish)",
+    "design_rod": "rodcal.design_rod(space)",
     "design_poses": f"rodcal.design_poses({TX90!r}, 2000, 'd', generate=100_000)",
     "diagnose": f"[rodcal.diagnose_calibration({TX90!r}) for _ in range(1000)]",
     "simulate": "rodcal.simulate('rods/5.toml', poses=1000)",
@@ -176,7 +176,7 @@ LONG = {
 def test_ctrl_c_ends_what_takes_long(what: str, tmp_path: pathlib.Path) -> None:
     program = f"""
         import signal, sys, rodcal
-        wish = {{"geometry": {{"l1_mm": {{"from": 100, "to": 500, "step": 1}}, "l2_mm": {{"from": 100, "to": 900, "step": 1}}}},
+        space = {{"geometry": {{"l1_mm": {{"from": 100, "to": 500, "step": 1}}, "l2_mm": {{"from": 100, "to": 900, "step": 1}}}},
                 "catalogue": {{"file": "builtin"}}, "objectives": {{"minimise": ["c_rod_um", "mass_g"]}}}}
         signal.signal(signal.SIGINT, signal.default_int_handler)
         print("begun", flush=True)

@@ -132,7 +132,7 @@ def test_the_calibrated_robot_predicts_what_was_calibrated(robot: str) -> None:
 
 
 def test_designs_from_dicts_and_poses_from_arrays() -> None:
-    wish = {
+    space = {
         "geometry": {"l1_mm": [150.0, 200.0], "l2_mm": np.array([400.0, 500.0])},
         "catalogue": {"same_tube": True},
         "objectives": {"minimise": ["c_rod_um", "mass_g"]},
@@ -143,7 +143,7 @@ def test_designs_from_dicts_and_poses_from_arrays() -> None:
         "outer_diameter_mm": [32.0, 40.0],
         "inner_diameter_mm": [30.0, 37.0],
     }
-    designs = rodcal.design_rod(wish, catalogue=tubes)
+    designs = rodcal.design_rod(space, catalogue=tubes)
     assert designs.evaluated == 8
     assert rodcal.compliance(designs.front[0].rod).c_rod_um == pytest.approx(designs.front[0].c_rod_um, rel=1e-9)
     generated = rodcal.design_poses(TX90, 30, generate=200)

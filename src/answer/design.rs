@@ -46,7 +46,7 @@ impl DesignRod<'_> {
     }
 }
 
-/// The rods that none betters, as rod files too.
+/// The rods that none betters, as rod files too; with status 1 where no rod keeps all limits.
 ///
 /// # Errors
 /// As [`Study::of_found`], [`Study::with_refined`] and [`for_robot`].
@@ -58,7 +58,9 @@ pub fn design_rod(space: DesignSpace, found: Found, asked: &DesignRod<'_>) -> Re
     };
     let mut answer = Answer::new(report::design::json(&study), report::design::report(&study));
     answer.files = report::design::files(&study)?;
-    if let Some((campaign, count)) = asked.campaign {
+    answer.status = u8::from(study.found.front.is_empty());
+    let is_any = !study.shown.is_empty() || study.base.is_some();
+    if let Some((campaign, count)) = asked.campaign.filter(|_| is_any) {
         let budget = Budget { seed: asked.seed, ..Budget::of(campaign, None, None)? };
         let found = for_robot(&study, campaign, &budget, &Where::Validation, count)?;
         answer.json["for_robot"] = report::design::for_robot_json(&found);

@@ -23,6 +23,8 @@ pub struct ComplianceOptions {
     pub load_station: Option<f64>,
     /// Which point is looked at, likewise.
     pub read_station: Option<f64>,
+    /// Damping ratio ζ of settling times, where it is known.
+    pub damping_ratio: Option<f64>,
 }
 
 impl Default for ComplianceOptions {
@@ -34,6 +36,7 @@ impl Default for ComplianceOptions {
             contact_force: paper_contact_force(),
             load_station: None,
             read_station: None,
+            damping_ratio: None,
         }
     }
 }
@@ -49,5 +52,6 @@ pub fn compliance(rod: Rod, options: &ComplianceOptions) -> Result<Answer> {
         study =
             study.with_stations(options.load_station.unwrap_or(tip), options.read_station.unwrap_or(tip))?;
     }
+    study.damping_ratio = options.damping_ratio;
     Ok(Answer::new(report::compliance::json(&study), report::compliance::report(&study)))
 }

@@ -55,6 +55,9 @@ pub(super) struct Piece<T = f64> {
     pub length: T,
     /// Local axes, z from node to node.
     pub frame: Rotation3<T>,
+    /// From the middle between the nodes to the centre of mass, in space, m; none of a straight
+    /// piece.
+    pub bulge: Option<Vector3<T>>,
 }
 
 /// The element between node k and node k + 1, k its index.
@@ -93,7 +96,7 @@ impl<T: Number> Chain<T> {
     pub fn straight(&mut self, profile: &Profile<T>, length: T, count: usize) {
         let (Node { position, station, .. }, count) = (self.last(), count.max(1));
         let step = length / count as f64;
-        let piece = Piece { profile: *profile, length: step, frame: self.frame };
+        let piece = Piece { profile: *profile, length: step, frame: self.frame, bulge: None };
         let shape = self.share(Shape::straight(profile, step).turned(&self.frame), Some(piece));
         let ahead = self.frame * ahead();
         for k in 0..count {
@@ -125,6 +128,8 @@ impl<T: Number> Chain<T> {
             rotary_inertia: profile.rotary_inertia.map(|inertia| inertia * longer),
             ..*profile
         };
+        // the arc's middle is beyond the chord by R (1 − cos ½α)
+        let rise = Vector3::new((step / 4.0).sin().powi(2) * radius * 2.0, T::zero(), T::zero());
         // seen from the start of the arc: R (1 − cos α, 0, sin α)
         let at = |a: T| {
             position + frame * (Vector3::new((a / 2.0).sin().powi(2) * 2.0, T::zero(), a.sin()) * radius)
@@ -132,7 +137,8 @@ impl<T: Number> Chain<T> {
         for k in 0..count {
             let (middle, end) = (step * (k as f64 + 0.5), step * (k + 1) as f64);
             let turn = frame * about_y(middle);
-            let piece = Piece { profile, length, frame: turn };
+            let bulge = Some(turn * (local.mass_centre - rise));
+            let piece = Piece { profile, length, frame: turn, bulge };
             let shape = self.share(local.turned(&turn), Some(piece));
             self.append(Element { reference: at(middle), shape }, at(end), station + end * radius);
         }

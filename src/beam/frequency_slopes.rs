@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, Matrix2};
 
 use super::chain::Chain;
 use super::model::{Physics, RodModel};
-use super::natural::{FEW, NaturalMode};
+use super::natural::{ELEMENTS, FEW, NaturalMode};
 use crate::dual::Dual;
 use crate::error::Result;
 use crate::rod::{NominalNumber, Rod};
@@ -25,8 +25,8 @@ use crate::rod::{NominalNumber, Rod};
 const SAME: f64 = 1e-7;
 
 impl Rod {
-    /// First natural frequency, Hz, and its derivative by each of `numbers`, Hz per SI unit of the
-    /// number; `None` where nothing has mass.
+    /// First natural frequency as [`Rod::natural_modes`] has it, Hz, and its derivative by each of
+    /// `numbers`, Hz per SI unit of the number; `None` where nothing has mass.
     ///
     /// ```
     /// use rodcal::prelude::*;
@@ -34,7 +34,7 @@ impl Rod {
     ///
     /// let rod = Rod::read("rods/5.toml".as_ref())?;
     /// let moduli = [NominalNumber::YoungsModulus("steel".into()), NominalNumber::ShearModulus("steel".into())];
-    /// let (frequency, slopes) = rod.first_frequency_slopes(&moduli)?.expect("steel has mass");
+    /// let (frequency, slopes) = rod.natural_frequency_slopes(&moduli)?.expect("steel has mass");
     /// // f ∝ √stiffness: 1 % of E and G together are 0.5 % of f
     /// let both = slopes[0] * rod.pipe1.material.youngs_modulus + slopes[1] * rod.pipe1.material.shear_modulus;
     /// assert!((both / frequency - 0.5).abs() < 1e-9);
@@ -43,8 +43,24 @@ impl Rod {
     ///
     /// # Errors
     /// As [`Rod::natural_modes`].
+    pub fn natural_frequency_slopes(&self, numbers: &[NominalNumber]) -> Result<Option<(f64, Vec<f64>)>> {
+        self.frequency_slopes(numbers, ELEMENTS)
+    }
+
+    /// The same of [`Rod::first_frequency`], whose mesh is coarser.
+    ///
+    /// # Errors
+    /// As [`Rod::natural_modes`].
     pub fn first_frequency_slopes(&self, numbers: &[NominalNumber]) -> Result<Option<(f64, Vec<f64>)>> {
-        let chain = RodModel::new(self, &Physics::WHOLE, FEW, &[])?.chain;
+        self.frequency_slopes(numbers, FEW)
+    }
+
+    fn frequency_slopes(
+        &self,
+        numbers: &[NominalNumber],
+        elements: usize,
+    ) -> Result<Option<(f64, Vec<f64>)>> {
+        let chain = RodModel::new(self, &Physics::WHOLE, elements, &[])?.chain;
         let modes = chain.natural_modes(2)?;
         let Some(first) = modes.first() else { return Ok(None) };
         let frequency = first.frequency;
@@ -53,7 +69,7 @@ impl Rod {
         let lambda = (std::f64::consts::TAU * frequency).powi(-2);
         let slope = |number: &NominalNumber| {
             let Some(rod) = self.derivative(number) else { return Ok(0.0) };
-            let changed = RodModel::new(&rod, &Physics::WHOLE, FEW, &[])?.chain;
+            let changed = RodModel::new(&rod, &Physics::WHOLE, elements, &[])?.chain;
             let by = lambda_slope(&chain, &changed, &shapes, lambda);
             Ok(-0.5 * frequency * by / lambda)
         };
@@ -94,12 +110,12 @@ mod tests {
     use crate::rod::{BendFlexibility, Joint};
 
     /// Central difference of fourth order of the frequency of the same mesh.
-    fn difference(rod: &Rod, number: &NominalNumber) -> f64 {
+    fn difference(rod: &Rod, number: &NominalNumber, elements: usize) -> f64 {
         let value = rod.value_of(number).unwrap();
         let step = if value == 0.0 { 1e-7 } else { 2e-4 * value };
         let frequency = |k: f64| {
             let rod = rod.with(number, value + k * step);
-            let model = RodModel::new(&rod, &Physics::WHOLE, FEW, &[]).unwrap();
+            let model = RodModel::new(&rod, &Physics::WHOLE, elements, &[]).unwrap();
             model.chain.natural_modes(1).unwrap()[0].frequency
         };
         (8.0 * (frequency(1.0) - frequency(-1.0)) - (frequency(2.0) - frequency(-2.0))) / (12.0 * step)
@@ -113,16 +129,21 @@ mod tests {
         bent.masses[0].station += 0.004;
         for rod in [plain, bent.with_mass("ring", 0.31, 0.1).with_joint(joint)] {
             let numbers = rod.numbers();
-            let (frequency, slopes) = rod.first_frequency_slopes(&numbers).unwrap().unwrap();
-            for (number, slope) in numbers.iter().zip(slopes) {
-                let expected = difference(&rod, number);
-                // of 1 % of the number, to 1e-6 of what that does, and to 1e-10 of the frequency
-                let size = 0.01 * rod.value_of(number).unwrap().abs().max(1e-6);
-                let off = (slope - expected).abs() * size;
-                assert!(
-                    off < 1e-6 * expected.abs() * size + 1e-10 * frequency,
-                    "{number}: {slope} {expected}"
-                );
+            let coarse = (FEW, rod.first_frequency_slopes(&numbers));
+            let fine = (ELEMENTS, rod.natural_frequency_slopes(&numbers));
+            for (elements, found) in [coarse, fine] {
+                let (frequency, slopes) = found.unwrap().unwrap();
+                for (number, slope) in numbers.iter().zip(slopes) {
+                    let expected = difference(&rod, number, elements);
+                    // of 1 % of the number, to 1e-6 of what that does, and to 1e-10 of the
+                    // frequency
+                    let size = 0.01 * rod.value_of(number).unwrap().abs().max(1e-6);
+                    let off = (slope - expected).abs() * size;
+                    assert!(
+                        off < 1e-6 * expected.abs() * size + 1e-10 * frequency,
+                        "{number}: {slope} {expected}"
+                    );
+                }
             }
         }
     }
@@ -134,7 +155,7 @@ mod tests {
         let numbers = [NominalNumber::LengthL1, NominalNumber::LengthL2];
         let (_, slopes) = rod.first_frequency_slopes(&numbers).unwrap().unwrap();
         assert!((slopes[0] / slopes[1] - 1.0).abs() < 1e-4, "{slopes:?}");
-        let expected = difference(&rod, &numbers[0]);
+        let expected = difference(&rod, &numbers[0], FEW);
         assert!((slopes[0] / expected - 1.0).abs() < 1e-6, "{slopes:?} {expected}");
     }
 }

@@ -173,7 +173,7 @@ impl RodModel {
 const SHARPEST_BEND: f64 = 1e-6;
 
 /// Stations closer than this are one node, m.
-const SAME_STATION: f64 = 1e-9;
+pub(super) const SAME_STATION: f64 = 1e-9;
 
 impl Physics {
     /// The rod without what is left out. Stations beyond a bend shift by what the corner is longer.
@@ -275,7 +275,7 @@ fn cuts<T: Number>(rod: &Rod<T>, stations: &[T]) -> Result<Vec<T>> {
 }
 
 /// Puts on the chain's end whatever the rod has at this station.
-fn place_features<T: Number>(chain: &mut Chain<T>, rod: &Rod<T>, station: T) {
+pub(super) fn place_features<T: Number>(chain: &mut Chain<T>, rod: &Rod<T>, station: T) {
     let is_here = |at: T| (at - station).value().abs() <= SAME_STATION;
     for mass in rod.masses.iter().filter(|mass| is_here(mass.station)) {
         chain.mass(mass.mass);

@@ -11,8 +11,8 @@
 //! iteration: K.-J. Bathe, *Finite Element Procedures*, 2nd ed., § 11.6). F is exact. M is
 //! consistent with the deflections of a Timoshenko beam between two nodes, rotary inertia included
 //! (J. S. Przemieniecki, *Theory of Matrix Structural Analysis*, 1968, § 11.6), and lumped masses
-//! sit at their nodes; an arc weighs along its chords. ω converges from above with the fourth power
-//! of the elements' length, with arcs with the second.
+//! sit at their nodes; the mass of an arc is that of its chords, moved to where its centre of mass
+//! is. ω converges from above with the fourth power of the elements' length.
 
 #[cfg(test)]
 mod tests;
@@ -24,9 +24,10 @@ use super::model::{Physics, RodModel};
 use crate::dual::Number;
 use crate::error::{Error, Result};
 use crate::rod::Rod;
+use crate::spatial::skew;
 
 /// Elements of [`Rod::natural_modes`]: the first frequencies are off by less than a millionth.
-const ELEMENTS: usize = 60;
+pub(super) const ELEMENTS: usize = 60;
 /// Vectors beyond those that are asked for: the iteration's error shrinks by (ω_asked/ω_next)² each
 /// time.
 const GUARD: usize = 8;
@@ -276,7 +277,7 @@ fn ritz(stiffness: DMatrix<f64>, mass: DMatrix<f64>) -> Option<(Vec<f64>, DMatri
 /// Consistent mass of a straight Timoshenko beam (Przemieniecki, Eqs 11.88 and 11.89), in the axes
 /// of space; freedoms: displacement and rotation of the near node, then of the far one.
 fn consistent_mass<T: Number>(piece: &Piece<T>) -> SMatrix<T, 12, 12> {
-    let Piece { profile, length: l, frame } = *piece;
+    let Piece { profile, length: l, frame, bulge } = *piece;
     let (mass, mut local) = (profile.mass_per_length * l, SMatrix::<T, 12, 12>::zeros());
     // displacement along x turns about y, along y about −x
     for (axis, turn, sign) in [(0, 4, 1.0), (1, 3, -1.0)] {
@@ -310,9 +311,29 @@ fn consistent_mass<T: Number>(piece: &Piece<T>) -> SMatrix<T, 12, 12> {
             local[(i, j)] += amount * share / 6.0;
         }
     }
-    let mut turn = SMatrix::<T, 12, 12>::zeros();
-    for block in 0..4 {
-        turn.fixed_view_mut::<3, 3>(3 * block, 3 * block).copy_from(frame.matrix());
+    // R·B·Rᵀ of each block of three
+    let turn = frame.matrix();
+    for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (3 * i, 3 * j))) {
+        let block = turn * local.fixed_view::<3, 3>(i, j) * turn.transpose();
+        local.fixed_view_mut::<3, 3>(i, j).copy_from(&block);
     }
-    turn * local * turn.transpose()
+    bulge.map_or(local, |bulge| moved_aside(&local, &bulge))
+}
+
+/// The mass of an arc lies beside its chord by `d`, and moves by u + θ×d: M' = TᵀM T with T = [1
+/// −[d]ₓ; 0 1] at both nodes.
+fn moved_aside<T: Number>(mass: &SMatrix<T, 12, 12>, d: &Vector3<T>) -> SMatrix<T, 12, 12> {
+    let cross = skew(d);
+    let mut moved = *mass;
+    for node in [0, 6] {
+        let shift = moved.fixed_view::<12, 3>(0, node) * cross;
+        let mut turns = moved.fixed_view_mut::<12, 3>(0, node + 3);
+        turns -= shift;
+    }
+    for node in [0, 6] {
+        let shift = cross.transpose() * moved.fixed_view::<3, 12>(node, 0);
+        let mut turns = moved.fixed_view_mut::<3, 12>(node + 3, 0);
+        turns -= shift;
+    }
+    moved
 }

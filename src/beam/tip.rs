@@ -8,9 +8,8 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::chain::Chain;
 use super::element::{Profile, Shape};
-use super::model::{Physics, RodModel};
+use super::model::{Physics, SAME_STATION, place_features};
 use crate::dual::{Number, about_y};
-use crate::error::Result;
 use crate::rod::Rod;
 use crate::spatial::{cross, product, skew};
 
@@ -24,7 +23,7 @@ use crate::spatial::{cross, product, skew};
 /// let mut solver = TipSolver::default();
 /// for l2 in [0.400, 0.525, 0.650] {
 ///     rod.l2 = l2;
-///     let [force, _] = solver.solve(&rod)?;
+///     let [force, _] = solver.solve(&rod);
 ///     let whole = Compliance::of_model(&rod, &Physics::default(), DEFAULT_ELEMENTS)?;
 ///     assert!((force - whole.force).norm() < 1e-11 * whole.force.norm());
 /// }
@@ -32,14 +31,17 @@ use crate::spatial::{cross, product, skew};
 /// ```
 #[derive(Debug, Clone)]
 pub struct TipSolver<T: Number = f64> {
-    chain: Chain<T>,
+    pub(super) chain: Chain<T>,
+    /// Where masses and joints sit.
+    cuts: Vec<T>,
     /// The last arc, its radius and angle: rods that are compared often have the same bend.
     arc: Option<(Profile<T>, [T; 2], Shape<T>)>,
 }
 
 impl<T: Number> Default for TipSolver<T> {
     fn default() -> Self {
-        TipSolver { chain: Chain::clamped_at(Vector3::zeros(), Rotation3::identity()), arc: None }
+        let chain = Chain::clamped_at(Vector3::zeros(), Rotation3::identity());
+        TipSolver { chain, cuts: Vec::new(), arc: None }
     }
 }
 
@@ -48,33 +50,69 @@ impl<T: Number> TipSolver<T> {
     /// `m[(i, j)]` is along axis i under a load along axis j. All physics is in it.
     ///
     /// The rod is taken as it is: [`Rod::checked`] checks it. The sums are not checked either, as
-    /// those of [`RodModel`] are: numbers beyond double precision make a result that is not finite.
-    ///
-    /// # Errors
-    /// As [`RodModel::new`], for a rod with masses or joints on it only.
-    pub fn solve(&mut self, rod: &Rod<T>) -> Result<[Matrix3<T>; 2]> {
-        if !rod.masses.is_empty() || !rod.joints.is_empty() {
-            return Ok(RodModel::new(rod, &Physics::WHOLE, 1, &[])?.chain.tip_motion());
-        }
+    /// those of [`RodModel`](super::RodModel) are: numbers beyond double precision make a result
+    /// that is not finite.
+    pub fn solve(&mut self, rod: &Rod<T>) -> [Matrix3<T>; 2] {
+        self.lay(rod, 1);
+        self.chain.tip_motion()
+    }
+
+    /// Lays the rod in `count` elements for each part between two places where something sits.
+    pub(super) fn lay(&mut self, rod: &Rod<T>, count: usize) {
         let physics = Physics::WHOLE;
-        let tangent = rod.tangent_length();
+        let (tangent, start, end) = (rod.tangent_length(), rod.bend_start(), rod.bend_end());
         self.chain.restart();
-        self.chain.straight(&physics.profile(&rod.pipe1, T::one()), rod.l1 - tangent, 1);
-        if rod.bend_radius.value() > 0.0 && rod.turn().value() > 0.0 {
-            let factor = rod.bend_flexibility.factor(&rod.bend.section, rod.bend_radius);
-            let (profile, key) = (physics.profile(&rod.bend, factor), [rod.bend_radius, rod.turn()]);
-            let shape = match &self.arc {
-                Some((own, known, shape)) if *own == profile && *known == key => *shape,
-                _ => Shape::arc(&profile, key[0], key[1]),
-            };
-            self.arc = Some((profile, key, shape));
-            self.chain.bend(&shape, &profile, key[0], key[1], 1);
+        self.cuts.clear();
+        self.cuts.extend(rod.masses.iter().map(|mass| mass.station));
+        self.cuts.extend(rod.joints.iter().map(|joint| joint.station));
+        self.cuts.sort_unstable_by(|a, b| a.value().total_cmp(&b.value()));
+        place_features(&mut self.chain, rod, T::zero());
+        let pipe1 = physics.profile(&rod.pipe1, T::one());
+        self.part(rod, [T::zero(), start], rod.l1 - tangent, |solver, length| {
+            solver.chain.straight(&pipe1, length, count);
+        });
+        let (radius, turn) = (rod.bend_radius, rod.turn());
+        if radius.value() > 0.0 && turn.value() > 0.0 {
+            let profile = physics.profile(&rod.bend, rod.bend_flexibility.factor(&rod.bend.section, radius));
+            self.part(rod, [start, end], turn, |solver, angle| {
+                let step = angle / count as f64;
+                let shape = match &solver.arc {
+                    Some((own, key, shape)) if *own == profile && *key == [radius, step] => *shape,
+                    _ => Shape::arc(&profile, radius, step),
+                };
+                solver.arc = Some((profile, [radius, step], shape));
+                solver.chain.bend(&shape, &profile, radius, angle, count);
+            });
         } else {
-            self.chain.turn(&about_y(rod.turn()));
+            self.chain.turn(&about_y(turn));
         }
-        self.chain.straight(&physics.profile(&rod.pipe2, T::one()), rod.l2 - tangent, 1);
+        let pipe2 = physics.profile(&rod.pipe2, T::one());
+        self.part(rod, [end, rod.length()], rod.l2 - tangent, |solver, length| {
+            solver.chain.straight(&pipe2, length, count);
+        });
         self.chain.mass(rod.tip_mass);
-        Ok(self.chain.tip_motion())
+    }
+
+    /// One part of the rod between two stations, cut where something sits; `size` is its length, or
+    /// its angle, which `lay` gets piece by piece.
+    fn part(&mut self, rod: &Rod<T>, [from, to]: [T; 2], size: T, mut lay: impl FnMut(&mut TipSolver<T>, T)) {
+        let is_inside =
+            |at: T| at.value() > from.value() + SAME_STATION && at.value() < to.value() - SAME_STATION;
+        let (mut last, mut left) = (from, size);
+        for k in 0..self.cuts.len() {
+            let at = self.cuts[k];
+            if is_inside(at) && at.value() > last.value() + SAME_STATION {
+                let piece = size * ((at - last) / (to - from));
+                lay(self, piece);
+                place_features(&mut self.chain, rod, at);
+                (last, left) = (at, left - piece);
+            }
+        }
+        lay(self, left);
+        // a sharp corner has one station at its two ends
+        if to.value() - from.value() > SAME_STATION {
+            place_features(&mut self.chain, rod, to);
+        }
     }
 }
 
@@ -114,23 +152,32 @@ impl<T: Number> Chain<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::beam::Load;
+    use crate::beam::{Load, RodModel};
     use crate::rod::{BendFlexibility, Joint};
     use crate::units::DEG;
 
+    /// Also with masses and joints, wherever they sit.
     #[test]
     fn the_tip_is_that_of_the_whole_model() {
         let plain = Rod::read("rods/2.toml".as_ref()).unwrap();
         let plain = Rod { masses: Vec::new(), joints: Vec::new(), ..plain };
         let bent = plain.clone().with_bend(0.06, BendFlexibility::VonKarman);
-        let joint = Joint { name: "j".into(), station: 0.2, bending: 1e-4, torsion: 2e-4 };
+        let joint =
+            |name: &str, station: f64| Joint { name: name.into(), station, bending: 1e-4, torsion: 2e-4 };
         let rods = [
             plain.clone(),
             plain.clone().with_angle(120.0 * DEG),
             plain.clone().with_angle(180.0 * DEG),
             bent.clone(),
             bent.clone().with_angle(60.0 * DEG),
-            bent.with_mass("ring", 0.3, 0.1).with_joint(joint),
+            bent.clone().with_mass("ring", 0.3, 0.1).with_joint(joint("a", 0.2)),
+            // at the flange, within the bend, at its ends, at the tip, and two at one place
+            bent.clone().with_joint(joint("flange", 0.0)).with_joint(joint("tip", bent.length())),
+            bent.clone()
+                .with_joint(joint("before", bent.bend_start()))
+                .with_joint(joint("within", 0.5 * (bent.bend_start() + bent.bend_end())))
+                .with_mass("beyond", bent.bend_end(), 0.2),
+            plain.clone().with_joint(joint("corner", plain.l1)).with_mass("ring", plain.l1, 0.1),
         ];
         let mut solver = TipSolver::default();
         // in turn, so that what is kept of one rod would be seen in the next
@@ -138,7 +185,7 @@ mod tests {
             let model = RodModel::new(rod, &Physics::WHOLE, 200, &[]).unwrap();
             let tip = model.tip();
             let response = model.chain.solve(&[Load::Force { node: tip }, Load::SelfWeight]).unwrap();
-            for (load, found) in solver.solve(rod).unwrap().into_iter().enumerate() {
+            for (load, found) in solver.solve(rod).into_iter().enumerate() {
                 let whole = response.motion(tip, load).translation;
                 assert!((found - whole).norm() < 1e-11 * whole.norm(), "{found} {whole}");
             }

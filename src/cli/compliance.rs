@@ -36,6 +36,10 @@ pub struct Compliance {
     /// Size of the contact force F in c_rod, in N [default: the paper's, 1.97].
     #[arg(long, value_name = "N", value_parser = contact_force, allow_negative_numbers = true)]
     contact_force: Option<f64>,
+    /// Damping of the rod's swinging, in % of critical damping: settling times are those of it
+    /// [default: 0.2, of bare tubes, and 1, with bonded or threaded joints].
+    #[arg(long, value_name = "PERCENT", value_parser = damping, allow_negative_numbers = true)]
+    damping_percent: Option<f64>,
 }
 
 const NOTES: &str = "\
@@ -74,6 +78,14 @@ fn contact_force(text: &str) -> std::result::Result<f64, String> {
     }
 }
 
+/// A share of critical damping in per cent.
+fn damping(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(percent) if percent > 0.0 && percent < 100.0 => Ok(percent),
+        _ => Err("expected a damping in %, above 0 and below 100".into()),
+    }
+}
+
 impl Compliance {
     pub fn run(&self) -> Result<Outcome> {
         let options = ComplianceOptions {
@@ -86,6 +98,7 @@ impl Compliance {
             contact_force: self.contact_force.unwrap_or_else(paper_contact_force),
             load_station: self.load_station.map(|mm| mm * MM),
             read_station: self.read_station.map(|mm| mm * MM),
+            damping_ratio: self.damping_percent.map(|percent| 0.01 * percent),
         };
         let mut answer = answer::compliance(Rod::read(&self.rod)?, &options)?;
         if let (CliMode::Calc, Some(Theory::Timoshenko)) = (self.mode, self.theory) {

@@ -3,7 +3,7 @@
 pub mod poses;
 pub mod rig;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand, ValueEnum};
@@ -11,7 +11,7 @@ use rodcal::calibration::Campaign;
 use rodcal::design::{DesignSpace, Found, Search, Searched};
 use rodcal::files::{self, Existing};
 use rodcal::rod::Rod;
-use rodcal::{Result, answer};
+use rodcal::{Error, Result, answer};
 
 use super::output::Outcome;
 use super::progress::Progress;
@@ -113,6 +113,15 @@ impl DesignRod {
     /// Looks at all rods, from where the kept search stopped.
     fn search(&self, space: &DesignSpace, searched: Searched, progress: &Progress) -> Result<Found> {
         let kept = self.resume.as_deref();
+        // a folder that is not there is most likely a slip in its name
+        let folder = kept.and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+            return Err(Error::Argument {
+                name: "--resume",
+                found: folder.display().to_string(),
+                expected: "a file in a folder that exists".into(),
+            });
+        }
         let found = kept.filter(|path| path.exists());
         let mut is_own = found.is_some();
         let mut search = match found {

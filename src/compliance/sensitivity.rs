@@ -9,6 +9,7 @@ use super::Compliance;
 use crate::beam::{Physics, RodModel};
 use crate::dual::Dual;
 use crate::error::Result;
+use crate::material::Material;
 use crate::parallel::in_parallel;
 use crate::rod::{NominalNumber, Rod};
 use crate::units::STANDARD_GRAVITY;
@@ -32,7 +33,8 @@ pub struct Sensitivity {
 }
 
 /// Derivatives of `rod` by every number of it ([`Rod::numbers`]) under `physics`, and with a
-/// contact force of this size (N).
+/// contact force of this size (N). Where G was stated by E and ν there is none by G, which changes
+/// with them.
 ///
 /// At entries of C^F or C^g that are 0 by symmetry, |C| of c_rod has a kink; there the derivative
 /// is the one as the number grows.
@@ -55,7 +57,7 @@ pub struct Sensitivity {
 /// As [`RodModel::new`] and [`Rod::natural_modes`].
 pub fn sensitivities(rod: &Rod, physics: &Physics, contact_force: f64) -> Result<Vec<Sensitivity>> {
     let numbers = rod.numbers();
-    let frequencies = rod.first_frequency_slopes(&numbers)?.map(|(_, slopes)| slopes);
+    let frequencies = rod.natural_frequency_slopes(&numbers)?.map(|(_, slopes)| slopes);
     let all = in_parallel(numbers.len(), |k| {
         let number = &numbers[k];
         let Some(varied) = rod.derivative(number) else { return Ok(None) };
@@ -73,7 +75,38 @@ pub fn sensitivities(rod: &Rod, physics: &Physics, contact_force: f64) -> Result
             frequency: frequencies.as_ref().map_or(0.0, |slopes| slopes[k]),
         }))
     });
-    all.into_iter().filter_map(Result::transpose).collect()
+    let mut all: Vec<Sensitivity> = all.into_iter().filter_map(Result::transpose).collect::<Result<_>>()?;
+    for material in [&rod.pipe1, &rod.bend, &rod.pipe2].map(|pipe| &pipe.material) {
+        if material.is_shear_modulus_derived {
+            along_with_shear_modulus(&mut all, material);
+        }
+    }
+    Ok(all)
+}
+
+/// Derivatives by E and ν where G follows them, instead of one by G:
+///
+/// ```text
+/// G = E/2(1+ν),   d/dE = ∂/∂E + (G/E)·∂/∂G,   d/dν = ∂/∂ν − (G/(1+ν))·∂/∂G
+/// ```
+fn along_with_shear_modulus(all: &mut Vec<Sensitivity>, material: &Material) {
+    let name = &material.name;
+    let is_by_it = |one: &Sensitivity| one.number == NominalNumber::ShearModulus(name.clone());
+    let Some(place) = all.iter().position(is_by_it) else { return };
+    let by_it = all.remove(place);
+    let g = material.shear_modulus;
+    for (number, factor) in [
+        (NominalNumber::YoungsModulus(name.clone()), g / material.youngs_modulus),
+        (NominalNumber::PoissonRatio(name.clone()), -g / (1.0 + material.poisson_ratio)),
+    ] {
+        if let Some(one) = all.iter_mut().find(|one| one.number == number) {
+            one.compliance.force += by_it.compliance.force * factor;
+            one.compliance.gravity += by_it.compliance.gravity * factor;
+            one.index += by_it.index * factor;
+            one.mass += by_it.mass * factor;
+            one.frequency += by_it.frequency * factor;
+        }
+    }
 }
 
 /// Standard uncertainty of every entry of C^F and C^g that the rod's numbers bring with them
@@ -121,7 +154,11 @@ mod tests {
     /// Every kind of section, of bend, of feature: against central differences, to 1e-6.
     #[test]
     fn derivatives_are_those_of_differences() {
-        let plain = Rod::read("rods/2.toml".as_ref()).unwrap();
+        let mut plain = Rod::read("rods/2.toml".as_ref()).unwrap();
+        for pipe in [&mut plain.pipe1, &mut plain.bend, &mut plain.pipe2] {
+            // each modulus by itself
+            pipe.material.is_shear_modulus_derived = false;
+        }
         let joint = Joint { name: "glue".into(), station: 0.11, bending: 1e-4, torsion: 2e-4 };
         let mut bent = plain.clone().with_bend(0.06, BendFlexibility::VonKarman).with_angle(1.9);
         // a mass at a joint has a kink there
@@ -168,6 +205,33 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// As a rod file has it: E and ν, of which the reader makes G.
+    #[test]
+    fn the_shear_modulus_follows_what_it_was_stated_by() {
+        let text = std::fs::read_to_string("rods/2.toml").unwrap();
+        let with = |e: f64, nu: f64| {
+            let mut rod = Rod::from_toml("rods/2.toml", &text).unwrap();
+            for pipe in [&mut rod.pipe1, &mut rod.bend, &mut rod.pipe2] {
+                pipe.material = Material::isotropic("steel", e, nu, 7900.0);
+            }
+            rod
+        };
+        let index = |rod: Rod| Compliance::of_model(&rod, &Physics::WHOLE, 1).unwrap().index(2.0);
+        let (e, nu) = (200e9, 0.29);
+        let all = sensitivities(&with(e, nu), &Physics::WHOLE, 2.0).unwrap();
+        let found_by = |number: NominalNumber| all.iter().find(|one| one.number == number);
+        let by_e = (index(with(e * 1.0001, nu)) - index(with(e * 0.9999, nu))) / (2e-4 * e);
+        let by_nu = (index(with(e, nu + 1e-4)) - index(with(e, nu - 1e-4))) / 2e-4;
+        let name = || "steel".to_owned();
+        for (number, expected) in
+            [(NominalNumber::YoungsModulus(name()), by_e), (NominalNumber::PoissonRatio(name()), by_nu)]
+        {
+            let found = found_by(number.clone()).unwrap().index;
+            assert!((found / expected - 1.0).abs() < 1e-6, "{number}: {found} {expected}");
+        }
+        assert!(found_by(NominalNumber::ShearModulus(name())).is_none());
     }
 
     /// A sleeve and its mass are one thing: they move together, and are named once.

@@ -65,6 +65,8 @@ pub struct Study {
     pub overload: Option<Overload>,
     /// What one station does under a force at another, where that was asked for.
     pub stations: Option<StationResponse>,
+    /// Damping ratio ζ of settling times, where it is known.
+    pub damping_ratio: Option<f64>,
 }
 
 /// Displacement and rotation at one station under a force at another (FEA model), in {T}.
@@ -130,6 +132,7 @@ impl Study {
             contact_force,
             calc,
             stations: None,
+            damping_ratio: None,
         })
     }
 

@@ -91,24 +91,27 @@ impl Figures {
         (!value.is_nan()).then_some(value)
     }
 
+    /// The same but for one.
+    pub(super) fn with(mut self, figure: Figure, value: f64) -> Figures {
+        self.set(figure, value);
+        self
+    }
+
     pub(super) fn set(&mut self, figure: Figure, value: f64) {
         self.0[figure as usize] = value;
     }
 
     /// Everything of `rod` but its frequency and price: those cost more than all others, or need a
     /// catalogue.
-    ///
-    /// # Errors
-    /// As [`TipSolver::solve`].
-    pub fn of(rod: &Rod, solver: &mut TipSolver) -> Result<Figures> {
-        Ok(Figures(numbers(rod, solver)?))
+    pub fn of(rod: &Rod, solver: &mut TipSolver) -> Figures {
+        Figures(numbers(rod, solver))
     }
 
     /// Derivatives of all figures of `rod` but the price by every number of it, per SI unit of the
     /// number.
     ///
     /// # Errors
-    /// As [`TipSolver::solve`] and [`Rod::first_frequency_slopes`].
+    /// As [`Rod::first_frequency_slopes`].
     pub fn slopes(rod: &Rod) -> Result<Vec<(NominalNumber, Figures)>> {
         Figures::slopes_by(rod, &rod.numbers(), true)
     }
@@ -128,7 +131,7 @@ impl Figures {
         let mut slopes = Vec::new();
         for (k, number) in all.iter().enumerate() {
             let Some(varied) = rod.derivative(number) else { continue };
-            let mut figures = Figures(numbers(&varied, &mut solver)?.map(|figure: Dual| figure.eps));
+            let mut figures = Figures(numbers(&varied, &mut solver).map(|figure: Dual| figure.eps));
             let frequency = frequencies.as_ref().map_or(0.0, |slopes| slopes[k]);
             figures.set(Figure::FirstFrequency, frequency);
             figures.set(Figure::Price, f64::NAN);
@@ -140,7 +143,7 @@ impl Figures {
     /// [`Figures::of`] and the first natural frequency.
     ///
     /// # Errors
-    /// As [`TipSolver::solve`] and [`Rod::first_frequency`].
+    /// As [`Rod::first_frequency`].
     pub fn with_frequency(mut self, rod: &Rod) -> Result<Figures> {
         // nothing that has mass: nothing that swings
         self.set(Figure::FirstFrequency, rod.first_frequency()?.unwrap_or(f64::INFINITY));
@@ -148,9 +151,19 @@ impl Figures {
     }
 }
 
+/// A combination and its figures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Design {
+    /// Its number among all combinations.
+    pub index: u64,
+    /// Its figures.
+    pub figures: Figures,
+}
+
 /// What [`Figures::of`] has, with whatever the numbers of the rod carry.
-fn numbers<T: Number>(rod: &Rod<T>, solver: &mut TipSolver<T>) -> Result<[T; 8]> {
-    let [force, weight] = solver.solve(rod)?;
+fn numbers<T: Number>(rod: &Rod<T>, solver: &mut TipSolver<T>) -> [T; 8] {
+    let [force, weight] = solver.solve(rod);
     let compliance = Compliance { force, gravity: weight * T::from(STANDARD_GRAVITY) };
     let largest = |matrix: &Matrix3<T>| matrix.iter().fold(T::zero(), |most, x| most.larger(x.size()));
     let length = |v: &Vector3<T>| (v.x * v.x + v.y * v.y + v.z * v.z).sqrt();
@@ -163,7 +176,7 @@ fn numbers<T: Number>(rod: &Rod<T>, solver: &mut TipSolver<T>) -> Result<[T; 8]>
     set(Figure::Mass, mass / GRAM);
     set(Figure::Moment, mass * STANDARD_GRAVITY * length(&centre));
     set(Figure::Reach, length(&rod.tip()) / MM);
-    Ok(figures)
+    figures
 }
 
 /// A figure that is to be small, or large.

@@ -56,7 +56,8 @@ pub struct Proxy {
     pub rms: [f64; 2],
 }
 
-/// The designs of a front for one robot.
+/// The designs of a front for one robot: not the best of all rods, for the front is that of other
+/// goals.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct ForRobot {
@@ -64,6 +65,8 @@ pub struct ForRobot {
     pub ranked: Vec<Ranked>,
     /// In each mode that all have.
     pub proxies: Vec<Proxy>,
+    /// Designs of the front that were ranked, and how many it has.
+    pub of_front: [usize; 2],
     /// What the forecast assumes.
     pub budget: Budget,
 }
@@ -71,7 +74,8 @@ pub struct ForRobot {
 /// Forecasts of the shown designs of a front and of the rod to compare with.
 ///
 /// # Errors
-/// What the beam model refuses. A rod that the robot cannot be calibrated with is no error.
+/// What the beam model refuses. A rod that the robot cannot be calibrated with is no error, unless
+/// it cannot with any of them: then why it cannot with the first.
 pub fn for_robot(
     study: &Study,
     campaign: &Campaign,
@@ -89,14 +93,19 @@ pub fn for_robot(
     rods.extend(study.base.as_ref().map(|base| &base.rod));
     let ranked = in_parallel(rods.len(), |k| {
         let compliance = Compliance::of_model(rods[k], &Physics::default(), DEFAULT_ELEMENTS)?;
-        Ok(Ranked {
-            name: rods[k].name.clone(),
-            c_rod: compliance.index(paper_contact_force()),
-            forecast: rod_forecast(campaign, Some(rods[k]), budget, at, count)
-                .map_err(|error| error.to_string()),
-        })
+        let forecast = rod_forecast(campaign, Some(rods[k]), budget, at, count);
+        Ok((rods[k].name.clone(), compliance.index(paper_contact_force()), forecast))
     });
-    let mut ranked: Vec<Ranked> = ranked.into_iter().collect::<Result<_>>()?;
+    let ranked: Vec<(String, f64, Result<RodForecast>)> = ranked.into_iter().collect::<Result<_>>()?;
+    let is_any = ranked.iter().any(|(_, _, forecast)| forecast.is_ok());
+    let mut known = Vec::new();
+    for (name, c_rod, forecast) in ranked {
+        match forecast {
+            Err(error) if !is_any => return Err(error),
+            forecast => known.push(Ranked { name, c_rod, forecast: forecast.map_err(|e| e.to_string()) }),
+        }
+    }
+    let mut ranked = known;
     let error = |one: &Ranked, mode: Mode| one.of(mode).map(|forecast| forecast.rms);
     let proxies = Mode::ALL.into_iter().filter_map(|mode| {
         let pairs: Option<Vec<(f64, f64)>> = ranked
@@ -111,7 +120,8 @@ pub fn for_robot(
         let rms = |one: &Ranked| error(one, Mode::Fea).unwrap_or(f64::INFINITY);
         rms(a).total_cmp(&rms(b))
     });
-    Ok(ForRobot { ranked, proxies, budget: budget.clone() })
+    let of_front = [places.len(), study.found.front.len()];
+    Ok(ForRobot { ranked, proxies, of_front, budget: budget.clone() })
 }
 
 fn proxy(mode: Mode, pairs: &[(f64, f64)]) -> Option<Proxy> {

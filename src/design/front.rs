@@ -1,73 +1,55 @@
 //! The Pareto front: designs that no other design betters in one goal without losing in another.
-//! Ties are kept.
+//!
+//! Ties are kept, also those that rounding hides: two sums of the same lengths differ in their last
+//! digits. What is compared are figures to ten digits, for all alike, so that the front is the same
+//! in whatever order designs come in.
 
-use super::figure::{Figures, Goal};
+mod tree;
 
-/// A combination and its figures.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct Design {
-    /// Its number among all combinations.
-    pub index: u64,
-    /// Its figures.
-    pub figures: Figures,
-}
+use self::tree::{Costs, Entry, Tree};
+use super::figure::{Design, Figures, Goal};
+
+/// Bits of a number that comparisons leave out: 32 of its 52 stay, which is a share of 2·10⁻¹⁰.
+const LEFT_OUT: u32 = 20;
 
 /// Designs that nobody betters so far.
 #[derive(Debug, Clone)]
 pub struct Front {
     goals: Vec<Goal>,
-    /// In no particular order while designs come in.
-    designs: Vec<Design>,
+    designs: Tree,
 }
 
 impl Front {
     /// An empty front for these goals.
     pub fn new(goals: &[Goal]) -> Front {
-        Front { goals: goals.to_vec(), designs: Vec::new() }
-    }
-
-    /// A front of designs none of which betters another.
-    pub(super) fn known(goals: &[Goal], designs: Vec<Design>) -> Front {
-        Front { goals: goals.to_vec(), designs }
+        Front { goals: goals.to_vec(), designs: Tree::leaf(Vec::new()) }
     }
 
     /// Takes `design` in, unless one that is known betters it, and puts out those that it betters.
     ///
     /// A design betters another that is as good as it in every goal and better in one.
     pub fn offer(&mut self, design: Design) {
-        let goals = &self.goals;
-        if goals.iter().any(|goal| goal.cost(&design.figures).is_nan()) {
+        let costs = costs(&self.goals, &design.figures);
+        self.take(Entry { costs, design });
+    }
+
+    fn take(&mut self, entry: Entry) {
+        let costs = &entry.costs;
+        if costs.iter().any(|cost| cost.is_nan()) || self.designs.betters(costs) {
             return;
         }
-        let beats = |a: &Design, b: &Design| {
-            let mut is_better = false;
-            for goal in goals {
-                let (own, other) = (goal.cost(&a.figures), goal.cost(&b.figures));
-                if own > other {
-                    return false;
-                }
-                is_better |= own < other;
-            }
-            is_better
-        };
-        if let Some(better) = self.designs.iter().position(|known| beats(known, &design)) {
-            // who bettered one design is likely to better the next
-            self.designs.swap(0, better);
-            return;
-        }
-        self.designs.retain(|known| !beats(&design, known));
-        self.designs.push(design);
+        self.designs.prune(costs);
+        self.designs.insert(entry);
     }
 
     /// Takes in all designs of another front.
     pub fn merge(&mut self, other: Front) {
-        other.designs.into_iter().for_each(|design| self.offer(design));
+        other.entries().into_iter().for_each(|entry| self.take(entry));
     }
 
     /// The designs, best in the first goal first, then in the second and so on, then by number.
     pub fn sorted(&self) -> Vec<Design> {
-        let mut designs = self.designs.clone();
+        let mut designs: Vec<Design> = self.entries().into_iter().map(|entry| entry.design).collect();
         designs.sort_by(|a, b| {
             let order = |goal: &Goal| goal.cost(&a.figures).total_cmp(&goal.cost(&b.figures));
             let by_goals = self.goals.iter().map(order).find(|order| order.is_ne());
@@ -83,7 +65,35 @@ impl Front {
 
     /// True before any design.
     pub fn is_empty(&self) -> bool {
-        self.designs.is_empty()
+        self.len() == 0
+    }
+
+    fn entries(&self) -> Vec<Entry> {
+        let mut entries = Vec::with_capacity(self.len());
+        self.designs.collect(&mut entries);
+        entries
+    }
+}
+
+/// Whether figures are as good as others in every goal and better in one, to ten digits.
+pub(super) fn betters(goals: &[Goal], figures: &Figures, other: &Figures) -> bool {
+    let (own, other) = (costs(goals, figures), costs(goals, other));
+    own.iter().zip(&other).all(|(own, other)| own <= other) && own != other
+}
+
+fn costs(goals: &[Goal], figures: &Figures) -> Costs {
+    let mut costs = Costs::default();
+    costs.iter_mut().zip(goals).for_each(|(cost, goal)| *cost = rounded(goal.cost(figures)));
+    costs
+}
+
+/// The nearest number whose last bits are 0.
+fn rounded(cost: f64) -> f64 {
+    const ONE: u64 = 1 << LEFT_OUT;
+    match cost.is_finite() {
+        // the next one carries into the exponent, as it should
+        true => f64::from_bits((cost.to_bits() + ONE / 2) & !(ONE - 1)),
+        false => cost,
     }
 }
 
@@ -129,6 +139,62 @@ mod tests {
             assert_eq!(found, expected);
             all.rotate_left(133);
         }
+    }
+
+    /// Many designs, so that the tree branches, and few values of some goals, so that there are
+    /// ties.
+    #[test]
+    fn a_front_of_many_goals_is_that_of_comparing_all_with_all() {
+        let figures = [Figure::CRod, Figure::Mass, Figure::Reach, Figure::Moment, Figure::Price];
+        let goals: Vec<Goal> =
+            figures.map(|figure| Goal { figure, is_maximised: figure == Figure::Reach }).to_vec();
+        let mut random = Random::seeded(6, 0);
+        for (count, goals) in [(3000, &goals[..2]), (1500, &goals[..3]), (1500, &goals[..])] {
+            let mut all: Vec<Design> = (0..count)
+                .map(|index| {
+                    let mut figures = Figures([f64::NAN; 8]);
+                    for (k, goal) in goals.iter().enumerate() {
+                        let value = random.uniform(1.0, 40.0);
+                        figures.set(goal.figure, if k % 2 == 0 { value } else { value.round() });
+                    }
+                    Design { index, figures }
+                })
+                .collect();
+            let cost = |design: &Design, goal: &Goal| {
+                let value = design.figures.get(goal.figure).unwrap();
+                if goal.is_maximised { -value } else { value }
+            };
+            let is_better = |a: &Design, b: &Design| {
+                let both = || goals.iter().map(|goal| (cost(a, goal), cost(b, goal)));
+                both().all(|(a, b)| a <= b) && both().any(|(a, b)| a < b)
+            };
+            let kept = |a: &&Design| !all.iter().any(|b| is_better(b, a));
+            let expected: Vec<u64> = all.iter().filter(kept).map(|design| design.index).collect();
+            for _ in 0..2 {
+                let [mut one, mut other] = [Front::new(goals), Front::new(goals)];
+                for (k, &design) in all.iter().enumerate() {
+                    if k % 3 == 0 { one.offer(design) } else { other.offer(design) }
+                }
+                one.merge(other);
+                let mut found: Vec<u64> = one.sorted().iter().map(|design| design.index).collect();
+                found.sort_unstable();
+                assert_eq!((found.len(), &found), (one.len(), &expected));
+                all.reverse();
+            }
+        }
+    }
+
+    #[test]
+    fn what_differs_by_rounding_alone_is_a_tie() {
+        let mut front = Front::new(&goals());
+        let (sum, whole) = (0.1 + 0.2, 0.3);
+        assert!(sum > whole);
+        for (index, c_rod) in [(0, sum), (1, whole), (2, whole * (1.0 + 1e-8)), (3, whole * (1.0 - 1e-15))] {
+            front.offer(design(index, c_rod, 700.0));
+        }
+        let mut found: Vec<u64> = front.sorted().iter().map(|design| design.index).collect();
+        found.sort_unstable();
+        assert_eq!(found, [0, 1, 3]);
     }
 
     #[test]

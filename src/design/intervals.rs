@@ -6,8 +6,7 @@
 //! what these do: of their difference only the rest counts. Lengths and diameters are made anew for
 //! each.
 
-use super::figure::{Figure, Figures, Goal};
-use super::front::Design;
+use super::figure::{Design, Figure, Figures, Goal};
 use crate::rod::{NominalNumber, Rod};
 
 /// Half of a 95 % interval of a normal number, in standard deviations.

@@ -1,7 +1,6 @@
 //! What to give up where no design keeps all limits.
 
-use super::figure::Figures;
-use super::front::Design;
+use super::figure::{Design, Figures};
 use super::limits::Limit;
 
 /// One limit that is in the way alone: all others can be kept.
@@ -22,15 +21,22 @@ pub struct Relaxed {
 pub struct Nearest {
     /// Limits that alone are in the way, in the order of the design file's limits.
     pub one_limit: Vec<Relaxed>,
-    /// The design whose worst limit is broken by the smallest share, with that share; frequencies
-    /// are not looked at where another limit is broken.
+    /// The design whose worst limit is broken by the smallest share, with that share.
     pub all_limits: Option<(Design, f64)>,
 }
 
 impl Nearest {
-    /// True where giving up `limit` alone for a design with these figures would ask for less than
-    /// what is known.
-    pub(super) fn would_relax(&self, limit: &Limit, figures: &Figures) -> bool {
+    /// True where a design with these figures, which breaks `broken`, would be nearer than what is
+    /// known.
+    pub(super) fn would_take(&self, broken: &[&Limit], figures: &Figures) -> bool {
+        let is_less = match broken {
+            [only] => self.would_relax(only, figures),
+            _ => false,
+        };
+        is_less || self.all_limits.as_ref().is_none_or(|(_, least)| worst(broken, figures) < *least)
+    }
+
+    fn would_relax(&self, limit: &Limit, figures: &Figures) -> bool {
         let to = figures.get(limit.figure).unwrap_or(f64::NAN);
         match self.one_limit.iter().find(|known| known.limit.key == limit.key) {
             Some(known) if limit.is_least => to > known.to,
@@ -39,15 +45,14 @@ impl Nearest {
         }
     }
 
-    /// Remembers a design that breaks `broken`, if it is nearer than those before; `is_all` where
-    /// those are all that it breaks.
-    pub(super) fn offer(&mut self, design: Design, broken: &[&Limit], is_all: bool) {
-        if let ([only], true) = (broken, is_all) {
+    /// Remembers a design that breaks `broken` and no other limit, if it is nearer than those
+    /// before.
+    pub(super) fn offer(&mut self, design: Design, broken: &[&Limit]) {
+        if let [only] = broken {
             let to = design.figures.get(only.figure).unwrap_or(f64::NAN);
             self.relax(Relaxed { limit: **only, to, design });
         }
-        let worst = broken.iter().map(|limit| limit.excess(&design.figures)).fold(0.0, f64::max);
-        self.approach(design, worst);
+        self.approach(design, worst(broken, &design.figures));
     }
 
     fn relax(&mut self, new: Relaxed) {
@@ -81,4 +86,9 @@ impl Nearest {
             self.approach(design, worst);
         }
     }
+}
+
+/// Largest share by which figures are beyond limits.
+fn worst(broken: &[&Limit], figures: &Figures) -> f64 {
+    broken.iter().map(|limit| limit.excess(figures)).fold(0.0, f64::max)
 }

@@ -10,6 +10,7 @@ mod criterion;
 mod limits;
 mod order;
 mod random;
+mod seen;
 mod study;
 
 pub use candidates::{Candidates, Source};

@@ -17,8 +17,7 @@ mod weights;
 use self::sequence::Search;
 use self::variable::{Variable, diameters, lengths, moved};
 pub use self::weights::weights;
-use super::figure::{Figure, Figures};
-use super::front::Design;
+use super::figure::{Design, Figure, Figures};
 use super::space::DesignSpace;
 use crate::error::Result;
 use crate::parallel::in_parallel;
@@ -35,6 +34,9 @@ const MOST_ROUNDS: usize = 3;
 const ALL_TUBES: usize = 200;
 const TUBES: usize = 8;
 const TUBES_OF_TWO: usize = 4;
+/// Shapes that every tube is tried with, and by which share their lengths differ at least.
+const SHAPES: usize = 4;
+const OTHER_SHAPE: f64 = 0.05;
 /// A gain that is none, and a share by which one end is as good as another.
 const NOTHING: f64 = 1e-5;
 const SAME: f64 = 1e-4;
@@ -148,12 +150,16 @@ pub fn refine(
     } else {
         nearest(space, [space.choice(design.index).tubes, best.tubes], &best.rod)
     };
-    let tried = in_parallel(of_catalogue.len(), |k| {
-        let [first, second] = of_catalogue[k].map(|tube| space.tubes[tube].pipe.clone());
-        let with = Rod { pipe1: first.clone(), bend: first, pipe2: second, ..best.rod.clone() };
-        search(of_catalogue[k]).best(&with, &lengths(space, &with))
+    // with another tube another end may be the better one
+    let shapes = shapes(&ends, best, &gains, &lengths(space, &best.rod));
+    let tried = in_parallel(of_catalogue.len() * shapes.len(), |k| {
+        let (tubes, shape) = (of_catalogue[k / shapes.len()], shapes[k % shapes.len()]);
+        let [first, second] = tubes.map(|tube| space.tubes[tube].pipe.clone());
+        let with = Rod { pipe1: first.clone(), bend: first, pipe2: second, ..shape.clone() };
+        search(tubes).best(&with, &lengths(space, &with))
     });
-    for (tubes, found) in of_catalogue.iter().zip(tried) {
+    let of_shapes = of_catalogue.iter().flat_map(|tubes| std::iter::repeat_n(tubes, shapes.len()));
+    for (tubes, found) in of_shapes.zip(tried) {
         let (rod, figures) = found?;
         let known = refined.catalogue.as_ref().map_or(0.0, |known| known.gained);
         let new = better(rod, names(space, *tubes), figures);
@@ -175,6 +181,22 @@ pub fn refine(
         refined.continuous.clone_from(&refined.catalogue);
     }
     Ok(Some(refined))
+}
+
+/// The best end and the next best ones of other lengths.
+fn shapes<'e>(ends: &'e [End], best: &'e End, gains: &[f64], lengths: &[Variable]) -> Vec<&'e Rod> {
+    let mut order: Vec<usize> = (0..ends.len()).filter(|&k| gains[k].is_finite()).collect();
+    order.sort_by(|&a, &b| gains[b].total_cmp(&gains[a]));
+    let is_other = |one: &Rod, other: &Rod| {
+        lengths.iter().any(|length| (length.value(one) / length.value(other)).ln().abs() > OTHER_SHAPE)
+    };
+    let mut shapes = vec![&best.rod];
+    for k in order {
+        if shapes.len() < SHAPES && shapes.iter().all(|known| is_other(&ends[k].rod, known)) {
+            shapes.push(&ends[k].rod);
+        }
+    }
+    shapes
 }
 
 /// Where a search ended.
@@ -324,7 +346,7 @@ mod tests {
             let of_figure = |figure: Figure| better.figures.get(figure).unwrap();
             assert!(of_figure(Figure::Reach) >= start.figures.get(Figure::Reach).unwrap() * (1.0 - 1e-9));
             assert!(space.limits.iter().all(|limit| limit.is_kept(&better.figures)));
-            let again = Figures::of(&better.rod, &mut TipSolver::default()).unwrap();
+            let again = Figures::of(&better.rod, &mut TipSolver::default());
             assert_eq!(again.get(Figure::CRod), better.figures.get(Figure::CRod));
         }
         assert!(any.tubes.is_empty() && bought.tubes.len() == 1);
@@ -346,7 +368,7 @@ mod tests {
                 for pipe in [&mut rod.pipe1, &mut rod.bend, &mut rod.pipe2] {
                     pipe.section = section;
                 }
-                let figures = Figures::of(&rod, &mut solver).unwrap();
+                let figures = Figures::of(&rod, &mut solver);
                 if figures.get(Figure::Mass).unwrap() <= 700.0 {
                     checked += 1;
                     let c_rod = figures.get(Figure::CRod).unwrap();
@@ -446,6 +468,20 @@ mod tests {
         let (right, wide) = (best("90"), best("133"));
         let both = best("{ from = 90, to = 133, step = 10.75 }");
         assert!(both <= right.min(wide) * (1.0 + 1e-4), "{both}: {right} {wide}");
+    }
+
+    /// The grid ends at 500 mm, the range at 590 mm.
+    #[test]
+    fn a_range_goes_to_its_end_though_its_steps_do_not() {
+        let text = "[geometry]\nl1_mm = 100\nl2_mm = { from = 300, to = 590, step = 100 }\n[catalogue]\nfile = \"t.csv\"\n\
+                    [objectives]\nmaximise = [\"reach_mm\"]\n";
+        let space =
+            DesignSpace::from_toml("d.toml", text, &|name| Ok((name.to_owned(), TUBES.to_owned()))).unwrap();
+        let front = search(&space, Searched::All, &|_| {}).unwrap().front;
+        let refined = refine(&space, &front, 0, &[1.0]).unwrap().unwrap();
+        for better in [refined.continuous.unwrap(), refined.catalogue.unwrap()] {
+            assert!((better.rod.l2 - 0.590).abs() < 1e-6, "{}", better.rod.l2);
+        }
     }
 
     #[test]

@@ -4,8 +4,7 @@
 
 use std::ops::Range;
 
-use super::figure::Figures;
-use super::front::{Design, Front};
+use super::figure::{Design, Figures};
 use super::nearest::{Nearest, Relaxed};
 use super::search::{Search, Searched};
 use super::space::DesignSpace;
@@ -16,7 +15,7 @@ const HEAD: &str = concat!("rodcal search ", env!("CARGO_PKG_VERSION"));
 /// What follows is the design file and its catalogue, word for word.
 const CONTENT: &str = "of";
 
-impl<'w> Search<'w> {
+impl<'s> Search<'s> {
     /// The search so far.
     pub fn to_text(&self) -> String {
         let total = &self.total;
@@ -66,11 +65,11 @@ impl<'w> Search<'w> {
     /// [`Error::Input`] where it is another search (another program, design file, catalogue or
     /// sample), or no search.
     pub fn from_text(
-        space: &'w DesignSpace,
+        space: &'s DesignSpace,
         searched: Searched,
         file: &str,
         text: &str,
-    ) -> Result<Search<'w>> {
+    ) -> Result<Search<'s>> {
         Search::new(space, searched)?.known(file, text)
     }
 
@@ -79,17 +78,17 @@ impl<'w> Search<'w> {
     /// # Errors
     /// As [`Search::from_text`] and [`Search::part`].
     pub fn part_from_text(
-        space: &'w DesignSpace,
+        space: &'s DesignSpace,
         searched: Searched,
         part: Range<u64>,
         file: &str,
         text: &str,
-    ) -> Result<Search<'w>> {
+    ) -> Result<Search<'s>> {
         Search::part(space, searched, part)?.known(file, text)
     }
 
     /// This search, which has looked at nothing yet, as a text has it.
-    fn known(mut self, file: &str, text: &str) -> Result<Search<'w>> {
+    fn known(mut self, file: &str, text: &str) -> Result<Search<'s>> {
         let (space, asked) = (self.space, self.asked());
         let search = &mut self;
         let mut lines = Lines { file, lines: text.lines(), number: 0 };
@@ -119,8 +118,9 @@ impl<'w> Search<'w> {
         total.broken = lines.all()?;
         total.impossible = lines.numbers()?;
         let [count] = lines.numbers()?;
-        let designs = (0..count).map(|_| Ok(design_of(&lines.numbers::<9>()?)));
-        total.front = Front::known(&space.goals, designs.collect::<Result<_>>()?);
+        for _ in 0..count {
+            total.front.offer(design_of(&lines.numbers::<9>()?));
+        }
         let mut nearest = Nearest::default();
         let [count] = lines.numbers()?;
         for _ in 0..count {

@@ -5,9 +5,9 @@ mod tests;
 
 use std::ops::Range;
 
-use super::figure::{Figure, Figures};
-use super::front::{Design, Front};
-use super::limits::Limit;
+use super::figure::{Design, Figure, Figures};
+use super::front::Front;
+use super::limits::{Impossible, Limit};
 use super::nearest::Nearest;
 use super::space::DesignSpace;
 use crate::beam::TipSolver;
@@ -48,8 +48,8 @@ pub struct Found {
     /// For each limit of the space the number of rods that break it. A rod counts for every limit
     /// that it breaks; its frequency is looked at only where it keeps all others.
     pub broken: Vec<u64>,
-    /// Combinations that are no rods, in the order of [`Impossible::ALL`](super::Impossible::ALL).
-    pub impossible: [u64; 3],
+    /// Combinations that are no rods, in the order of [`Impossible::ALL`].
+    pub impossible: [u64; Impossible::COUNT],
     /// What comes nearest, where nothing keeps all limits.
     pub nearest: Option<Nearest>,
 }
@@ -59,7 +59,7 @@ pub(super) struct Sum {
     pub front: Front,
     pub feasible: u64,
     pub broken: Vec<u64>,
-    pub impossible: [u64; 3],
+    pub impossible: [u64; Impossible::COUNT],
     pub nearest: Nearest,
 }
 
@@ -82,8 +82,8 @@ pub fn search(space: &DesignSpace, searched: Searched, progress: &(dyn Fn(u64) +
 /// It may be done in parts too ([`Search::part`]), by others, and put together
 /// ([`Search::take_in`]): the front of the parts' fronts is the front, and all counts are sums of
 /// theirs.
-pub struct Search<'w> {
-    pub(super) space: &'w DesignSpace,
+pub struct Search<'s> {
+    pub(super) space: &'s DesignSpace,
     pub(super) searched: Searched,
     /// Rods that the whole search looks at, and those of them that this one does.
     count: u64,
@@ -92,12 +92,12 @@ pub struct Search<'w> {
     pub(super) total: Sum,
 }
 
-impl<'w> Search<'w> {
+impl<'s> Search<'s> {
     /// Before any rod.
     ///
     /// # Errors
     /// [`Error::Argument`] for more than [`MOST_RODS`](super::MOST_RODS) rods, or no samples.
-    pub fn new(space: &'w DesignSpace, searched: Searched) -> Result<Search<'w>> {
+    pub fn new(space: &'s DesignSpace, searched: Searched) -> Result<Search<'s>> {
         let all = space.combinations();
         let count = match searched {
             Searched::Samples(samples, _) => samples.min(all),
@@ -126,7 +126,7 @@ impl<'w> Search<'w> {
     /// # Errors
     /// As [`Search::new`]; [`Error::Argument`] for a part that begins or ends within what is looked
     /// at together ([`PART`]), or that is none of the search.
-    pub fn part(space: &'w DesignSpace, searched: Searched, part: Range<u64>) -> Result<Search<'w>> {
+    pub fn part(space: &'s DesignSpace, searched: Searched, part: Range<u64>) -> Result<Search<'s>> {
         let whole = Search::new(space, searched)?;
         let is_bound = |at: u64| at.is_multiple_of(PART) || at == whole.count;
         if part.is_empty() || part.end > whole.count || !is_bound(part.start) || !is_bound(part.end) {
@@ -245,22 +245,17 @@ impl<'w> Search<'w> {
 }
 
 /// What a task reuses from rod to rod.
-struct Task<'w> {
-    space: &'w DesignSpace,
+struct Task<'s> {
+    space: &'s DesignSpace,
     solver: TipSolver,
     rod: Option<(Rod, [usize; 2])>,
-    /// The frequency is a goal, is a limit.
-    swings: [bool; 2],
+    is_frequency_a_goal: bool,
 }
 
-impl<'w> Task<'w> {
-    fn new(space: &'w DesignSpace) -> Self {
-        let is_frequency = |figure: Figure| figure == Figure::FirstFrequency;
-        let swings = [
-            space.goals.iter().any(|goal| is_frequency(goal.figure)),
-            space.limits.iter().any(|limit| is_frequency(limit.figure)),
-        ];
-        Task { space, solver: TipSolver::default(), rod: None, swings }
+impl<'s> Task<'s> {
+    fn new(space: &'s DesignSpace) -> Self {
+        let is_frequency_a_goal = space.goals.iter().any(|goal| goal.figure == Figure::FirstFrequency);
+        Task { space, solver: TipSolver::default(), rod: None, is_frequency_a_goal }
     }
 
     fn run(&mut self, numbers: impl Iterator<Item = u64>) -> Result<Sum> {
@@ -295,27 +290,44 @@ impl<'w> Task<'w> {
     }
 
     fn judge(&mut self, index: u64, rod: &Rod, sum: &mut Sum) -> Result<()> {
-        let mut figures = Figures::of(rod, &mut self.solver)?;
+        let mut figures = Figures::of(rod, &mut self.solver);
         if self.space.goals.iter().any(|goal| goal.figure == Figure::Price) {
             figures.set(Figure::Price, self.space.price(&self.space.choice(index)));
         }
-        let [is_goal, is_limit] = self.swings;
         let limits = &self.space.limits;
         let of_tip = |limit: &&Limit| limit.figure != Figure::FirstFrequency;
-        let mut broken: Vec<&Limit> =
-            limits.iter().filter(of_tip).filter(|limit| !limit.is_kept(&figures)).collect();
-        let is_near = match broken[..] {
-            [] => true,
-            // to say which one limit is in the way, if the frequency is not
-            [only] => sum.feasible == 0 && sum.nearest.would_relax(only, &figures),
-            _ => false,
+        let broken_of = |figures: &Figures, is_asked: &dyn Fn(&&Limit) -> bool| -> Vec<&Limit> {
+            limits.iter().filter(is_asked).filter(|limit| !limit.is_kept(figures)).collect()
         };
-        let mut is_whole = !is_limit;
-        if (is_limit && is_near) || (is_goal && broken.is_empty()) {
+        let mut broken = broken_of(&figures, &of_tip);
+        let swing = limits.iter().find(|limit| !of_tip(limit));
+        let mut is_known = swing.is_none();
+        let is_near = swing.is_some() && sum.feasible == 0;
+        let mut is_asked = broken.is_empty() && self.is_frequency_a_goal;
+        // the frequency costs more than all else: where an estimate will do, that is taken
+        if let Some(limit) = swing.filter(|_| broken.is_empty() || is_near) {
+            let rough = self.solver.frequency(rod);
+            let with = |share: f64| figures.with(Figure::FirstFrequency, rough * (1.0 + share));
+            let [low, high] = [with(-TipSolver::FREQUENCY_SHARE), with(TipSolver::FREQUENCY_SHARE)];
+            let is_kept = limit.is_kept(&low);
+            let is_broken = !limit.is_kept(&high);
+            let is_nearer = || {
+                let broken = broken_of(&high, &|_| true);
+                broken.is_empty() || sum.nearest.would_take(&broken, &high)
+            };
+            is_asked = match (broken.is_empty(), is_kept, is_broken) {
+                (true, true, _) => self.is_frequency_a_goal,
+                (true, false, false) => true,
+                _ => is_near && is_nearer(),
+            };
+            if is_broken && !is_asked {
+                broken.push(limit);
+            }
+        }
+        if is_asked {
             figures = figures.with_frequency(rod)?;
-            is_whole = true;
-            let of_swing = limits.iter().filter(|limit| !of_tip(limit) && !limit.is_kept(&figures));
-            broken.extend(of_swing);
+            is_known = true;
+            broken.extend(swing.filter(|limit| !limit.is_kept(&figures)));
         }
         let design = Design { index, figures };
         if broken.is_empty() {
@@ -327,8 +339,8 @@ impl<'w> Task<'w> {
             let is_counted = of_tip(&limit) || broken.len() == 1;
             *count += u64::from(is_counted && broken.iter().any(|one| one.key == limit.key));
         }
-        if sum.feasible == 0 {
-            sum.nearest.offer(design, &broken, is_whole);
+        if sum.feasible == 0 && is_known {
+            sum.nearest.offer(design, &broken);
         }
         Ok(())
     }
@@ -340,7 +352,7 @@ impl Sum {
             front: Front::new(&space.goals),
             feasible: 0,
             broken: vec![0; space.limits.len()],
-            impossible: [0; 3],
+            impossible: [0; Impossible::COUNT],
             nearest: Nearest::default(),
         }
     }

@@ -30,9 +30,9 @@ pub struct DesignSpace {
     pub bend_radius: Vec<f64>,
     #[allow(missing_docs)]
     pub tip_mass: Vec<f64>,
-    /// Which of L1, L2, γ, bend radius and tip mass were given as ranges, between whose steps
-    /// values make sense too.
-    pub is_range: [bool; 5],
+    /// Ends of L1, L2, γ, bend radius and tip mass, SI, where they were given as ranges, between
+    /// which other values make sense too; the steps of the grid may end before.
+    pub ranges: [Option<[f64; 2]>; 5],
     /// How much more flexible bends are than beams.
     pub bend_flexibility: BendFlexibility,
     /// Tubes to choose from.
@@ -142,6 +142,9 @@ impl DesignSpace {
         if rod.bend_radius > 0.0 && rod.turn() > 0.0 && rod.bend_radius < rod.bend.section.height() / 2.0 {
             return Err(Impossible::BendTighterThanTube);
         }
+        if rod.bend_radius == 0.0 && !has_room_for_corner(rod) {
+            return Err(Impossible::CornerDoesNotFit);
+        }
         let mut stations =
             self.masses.iter().map(|mass| mass.station).chain(self.joints.iter().map(|joint| joint.station));
         let length = if self.masses.len() + self.joints.len() > 0 { rod.length() } else { 0.0 };
@@ -156,4 +159,11 @@ impl DesignSpace {
         let [first, second] = choice.tubes.map(|tube| self.tubes[tube].price_per_m.unwrap_or(f64::NAN));
         first * choice.l1 + second * choice.l2
     }
+}
+
+/// Whether a sharp corner leaves something of both pipes: along its inner side it takes ½D·cot(½γ)
+/// of each, as a bend of radius ½D would, D of the thicker pipe.
+fn has_room_for_corner(rod: &Rod) -> bool {
+    let half = 0.5 * rod.pipe1.section.height().max(rod.pipe2.section.height());
+    half <= rod.l1.min(rod.l2) * (0.5 * rod.gamma).tan()
 }

@@ -1,7 +1,7 @@
 //! A search with everything that is to be said of its front.
 
-use super::figure::{Figure, Figures, Goal};
-use super::front::Design;
+use super::figure::{Design, Figure, Figures, Goal};
+use super::front::betters;
 use super::intervals::{Intervals, indistinguishable};
 use super::refine::{Refined, refine, weights};
 use super::search::{Found, Searched, search};
@@ -21,7 +21,7 @@ const MOST_KNOWN: usize = 500;
 #[non_exhaustive]
 pub struct Study {
     /// What was asked for.
-    pub wish: DesignSpace,
+    pub space: DesignSpace,
     /// What was found.
     pub found: Found,
     /// The designs that are shown, best in the first goal first.
@@ -146,7 +146,7 @@ impl Study {
             }
         }
         let base = base.map(|rod| Base::new(rod, &space, &found)).transpose()?;
-        Ok(Study { wish: space, found, shown, known, base, refined: None })
+        Ok(Study { space, found, shown, known, base, refined: None })
     }
 
     /// Refines the design at `place` of the front, from 0, for `goal`: as [`weights`] reads it.
@@ -154,8 +154,8 @@ impl Study {
     /// # Errors
     /// [`Error::Argument`] for a place beyond the front; as [`refine`] and [`weights`].
     pub fn with_refined(mut self, place: usize, goal: Option<&str>) -> Result<Study> {
-        let weights = weights(&self.wish, goal)?;
-        self.refined = refine(&self.wish, &self.found.front, place, &weights)?;
+        let weights = weights(&self.space, goal)?;
+        self.refined = refine(&self.space, &self.found.front, place, &weights)?;
         match self.refined {
             Some(_) => Ok(self),
             None => Err(Error::Argument {
@@ -171,19 +171,15 @@ impl Study {
 
     /// The first goal, and the second where there is one.
     pub fn axes(&self) -> (Goal, Option<Goal>) {
-        (self.wish.goals[0], self.wish.goals.get(1).copied())
+        (self.space.goals[0], self.space.goals.get(1).copied())
     }
 }
 
 impl Base {
     fn new(rod: Rod, space: &DesignSpace, found: &Found) -> Result<Base> {
-        let figures = Figures::of(&rod, &mut TipSolver::default())?.with_frequency(&rod)?;
-        let betters = |design: &&Design| {
-            let costs = |goal: &Goal| (goal.cost(&design.figures), goal.cost(&figures));
-            space.goals.iter().all(|goal| costs(goal).0 <= costs(goal).1)
-                && space.goals.iter().any(|goal| costs(goal).0 < costs(goal).1)
-        };
-        let bettered_by = found.front.iter().filter(betters).count();
+        let figures = Figures::of(&rod, &mut TipSolver::default()).with_frequency(&rod)?;
+        let is_better = |design: &&Design| betters(&space.goals, &design.figures, &figures);
+        let bettered_by = found.front.iter().filter(is_better).count();
         let is_known = |figure: Figure| figures.get(figure).is_some();
         let broken = space.limits.iter().filter(|limit| is_known(limit.figure) && !limit.is_kept(&figures));
         Ok(Base { bettered_by, broken: broken.map(|limit| limit.key).collect(), rod, figures })

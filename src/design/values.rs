@@ -22,6 +22,16 @@ pub(super) enum Raw {
     Range(Range),
 }
 
+impl Raw {
+    /// Both ends of a range.
+    pub(super) fn ends(&self) -> Option<[f64; 2]> {
+        match self {
+            Raw::Range(range) => Some([range.from, range.to]),
+            _ => None,
+        }
+    }
+}
+
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Range {
@@ -111,7 +121,8 @@ pub(super) fn values(check: &mut Check, key: &str, raw: &Spanned<Raw>, bounds: B
     if all.len() > MOST_VALUES {
         return Err(toml.is(key, raw, &format!("at most {MOST_VALUES} values")));
     }
-    if all.iter().any(|value| !(bounds.least..=bounds.most).contains(value)) {
+    let ends = raw.get_ref().ends().into_iter().flatten();
+    if all.iter().copied().chain(ends).any(|value| !(bounds.least..=bounds.most).contains(&value)) {
         return Err(toml.is(key, raw, bounds.expected));
     }
     let mut seen: Vec<f64> = Vec::new();

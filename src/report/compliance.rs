@@ -52,6 +52,10 @@ pub fn json(study: &Study) -> Value {
         "tip_mm": (study.rod.tip() / MM).as_slice(),
         "mass_g": study.rod.mass() / GRAM,
         "natural_frequencies_hz": study.shape.modes.iter().map(|mode| mode.frequency).collect::<Vec<_>>(),
+        "settling_times_s": study.damping_ratio.map(|ratio| {
+            let time = |mode: &NaturalMode| settling_time(mode.frequency, ratio, SHARE);
+            study.shape.modes.iter().map(time).collect::<Vec<_>>()
+        }),
         "contributions": steps,
         "sensitivities": study.sensitivities.iter().map(sensitivity_json).collect::<Vec<_>>(),
         "one_percent_more": sensitivities::json(&one_percent_more(study), &PERCENTS),
@@ -198,21 +202,23 @@ fn what_counts(study: &Study) -> Option<Section> {
     Some(Section::new(format!("What counts, rod {}", rod.name), vec![table, figure]))
 }
 
+/// What a swing dies down to in the settling time.
+const SHARE: f64 = 0.02;
+
 /// How fast the rod swings, and in which shapes; nothing of a rod without mass.
 fn swing(study: &Study) -> Option<Section> {
-    /// What a swing dies down to, and damping ratios: of bare tubes, and with bonded or threaded
-    /// joints.
-    const SHARE: f64 = 0.02;
+    /// Damping ratios of bare tubes, and with bonded or threaded joints.
     const DAMPING: [f64; 2] = [0.002, 0.01];
+    let damping = study.damping_ratio.map_or(DAMPING.to_vec(), |ratio| vec![ratio]);
     let (rod, modes) = (&study.rod, &study.shape.modes);
     if modes.is_empty() {
         return None;
     }
     let mut columns = vec![Column::text("mode"), Column::text("swings"), Column::number("frequency", "Hz")];
     columns.extend(
-        DAMPING.map(|ratio| {
-            Column::number(format!("to 2 % at {} % damping", significant(100.0 * ratio, 1)), "s")
-        }),
+        damping
+            .iter()
+            .map(|ratio| Column::number(format!("to 2 % at {} % damping", (1e5 * ratio).round() / 1e3), "s")),
     );
     let caption = format!("Rod {}: slowest natural modes, clamped at the flange.", rod.name);
     let mut table = Table::new("natural-frequencies", caption, columns);
@@ -227,7 +233,8 @@ fn swing(study: &Study) -> Option<Section> {
     };
     for (k, mode) in modes.iter().enumerate() {
         let mut cells = vec![(k + 1).to_string(), direction(mode).to_owned(), significant(mode.frequency, 4)];
-        cells.extend(DAMPING.map(|ratio| significant(settling_time(mode.frequency, ratio, SHARE), 2)));
+        cells
+            .extend(damping.iter().map(|ratio| significant(settling_time(mode.frequency, *ratio, SHARE), 2)));
         table.row(cells);
     }
     // a tip that swings by 1 mm

@@ -21,7 +21,7 @@ use super::table::{Column, Table};
 use super::{Block, Report, Section};
 use crate::design::{Design, Figure, Figures, Goal, Impossible, Limit, Shown, Study};
 use crate::rod::NominalNumber;
-use crate::units::{MM, significant};
+use crate::units::significant;
 
 /// The JSON of `rodcal design rod --json`.
 pub fn json(study: &Study) -> Value {
@@ -29,7 +29,7 @@ pub fn json(study: &Study) -> Value {
     let front: Vec<Value> =
         found.front.iter().enumerate().map(|(place, design)| front_json(study, place, design)).collect();
     let mut because = Map::new();
-    for (limit, count) in study.wish.limits.iter().zip(&found.broken) {
+    for (limit, count) in study.space.limits.iter().zip(&found.broken) {
         because.insert(limit.key.into(), (*count).into());
     }
     for (why, count) in Impossible::ALL.iter().zip(found.impossible).filter(|(_, count)| *count > 0) {
@@ -44,15 +44,16 @@ pub fn json(study: &Study) -> Value {
         })
     });
     json!({
-        "design": study.wish.file,
-        "combinations": study.wish.combinations(),
+        "design": study.space.file,
+        "combinations": study.space.combinations(),
         "evaluated": found.evaluated,
         "feasible": found.feasible,
-        "objectives": study.wish.goals.iter().map(goal_json).collect::<Vec<_>>(),
+        "objectives": study.space.goals.iter().map(goal_json).collect::<Vec<_>>(),
         "front": front,
         "infeasible_because": because,
         "relax": relaxed.collect::<Vec<_>>(),
-        "refined": study.refined.as_ref().map(|found| refined::json(&study.wish, found)),
+        "nearest": nearest_json(study),
+        "refined": study.refined.as_ref().map(|found| refined::json(&study.space, found)),
         "base": study.base.as_ref().map(|base| {
             let mut object = figures_json(&Design { index: 0, figures: base.figures });
             object.insert("rod".into(), base.rod.name.clone().into());
@@ -63,6 +64,26 @@ pub fn json(study: &Study) -> Value {
     })
 }
 
+/// The design that comes nearest to all limits together, and what each would have to be for it.
+fn nearest_json(study: &Study) -> Value {
+    let nearest = study.found.nearest.as_ref().and_then(|nearest| nearest.all_limits);
+    let Some((design, worst)) = nearest else { return Value::Null };
+    let needed = broken_by(study, &design)
+        .map(|(limit, value)| json!({ "constraint": limit.key, "stated": limit.value, "needed": value }));
+    json!({
+        "rod": rod_json(study, design.index),
+        "beyond_percent": 100.0 * worst,
+        "constraints": needed.collect::<Vec<_>>(),
+    })
+}
+
+/// Limits that a design breaks, each with its figure.
+fn broken_by<'s>(study: &'s Study, design: &Design) -> impl Iterator<Item = (&'s Limit, f64)> {
+    let figures = design.figures;
+    let broken = study.space.limits.iter().filter(move |limit| !limit.is_kept(&figures));
+    broken.map(move |limit| (limit, figures.get(limit.figure).unwrap_or(f64::NAN)))
+}
+
 fn goal_json(goal: &Goal) -> Value {
     json!({ if goal.is_maximised { "maximise" } else { "minimise" }: goal.figure.key() })
 }
@@ -71,7 +92,7 @@ fn front_json(study: &Study, place: usize, design: &Design) -> Value {
     let mut object = Map::new();
     object.insert("rod".into(), rod_json(study, design.index));
     object.append(&mut figures_json(design));
-    object.insert("tubes".into(), study.wish.tubes_of(design.index).into());
+    object.insert("tubes".into(), study.space.tubes_of(design.index).into());
     if let Some(known) = known_at(study, place) {
         let interval = |figure: Figure| {
             let (value, half) = (design.figures.get(figure)?, half_of(known, figure)?);
@@ -156,7 +177,7 @@ fn what_counts(study: &Study) -> Section {
 
 /// The keys of a rod file.
 fn rod_json(study: &Study, index: u64) -> Value {
-    let text = study.wish.rod(index).ok().map(|rod| rod.to_toml(&[]));
+    let text = study.space.rod(index).ok().map(|rod| rod.to_toml(&[]));
     text.and_then(|text| toml::from_str(&text).ok()).unwrap_or(Value::Null)
 }
 
@@ -173,7 +194,7 @@ pub fn report(study: &Study) -> Report {
     }
     sections.push(Section::new("What was looked at", looked_at(study)));
     Report {
-        title: format!("Rods for {}", study.wish.file),
+        title: format!("Rods for {}", study.space.file),
         headline: headline(study),
         cards: overview::cards(study),
         warnings: overview::warnings(study),
@@ -187,15 +208,9 @@ pub fn headline(study: &Study) -> String {
     let found = &study.found;
     let all = count(found.evaluated, "rod");
     if found.front.is_empty() {
-        let relax = found.nearest.iter().flat_map(|nearest| &nearest.one_limit);
-        let relax: Vec<String> =
-            relax.map(|one| format!("{} to {}", one.limit.key, needed(&one.limit, one.to))).collect();
-        return match relax.is_empty() {
-            true => format!("None of {all} keeps all limits, and none would with only one of them given up."),
-            false => format!("None of {all} keeps all limits. One would do: relax {}.", relax.join(", or ")),
-        };
+        return nothing_fits(study, &all);
     }
-    let spans = study.wish.goals.iter().map(|goal| {
+    let spans = study.space.goals.iter().map(|goal| {
         let values = || found.front.iter().filter_map(|design| design.figures.get(goal.figure));
         let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
         let (name, unit) = goal.figure.words();
@@ -211,19 +226,41 @@ pub fn headline(study: &Study) -> String {
     format!("Of {all} {} all limits, and {front}: {}.", verb(found.feasible), spans.join(", "))
 }
 
+/// What would have to give where no rod keeps all limits.
+fn nothing_fits(study: &Study, all: &str) -> String {
+    let relax = |(limit, to): (&Limit, f64)| format!("{} to {}", limit.key, needed(limit, to));
+    let nearest = study.found.nearest.as_ref();
+    let one_limit = nearest.iter().flat_map(|nearest| &nearest.one_limit);
+    let one_limit: Vec<String> = one_limit.map(|one| relax((&one.limit, one.to))).collect();
+    if !one_limit.is_empty() {
+        return format!("None of {all} keeps all limits. One would do: relax {}.", one_limit.join(", or "));
+    }
+    match nearest.and_then(|nearest| nearest.all_limits) {
+        Some((design, _)) => format!(
+            "None of {all} keeps all limits, and none would with only one of them given up. The nearest needs several at \
+             once: relax {}.",
+            broken_by(study, &design).map(relax).collect::<Vec<_>>().join(" and ")
+        ),
+        None => {
+            let reasons = Impossible::ALL.iter().zip(study.found.impossible).filter(|(_, count)| *count > 0);
+            let reasons: Vec<String> =
+                reasons.map(|(why, count)| format!("{} ({count})", why.words())).collect();
+            format!("None of {all} can be built: {}.", reasons.join("; "))
+        }
+    }
+}
+
 fn verb(feasible: u64) -> String {
     if feasible == 1 { "1 keeps".into() } else { format!("{feasible} keep") }
 }
 
 /// A limit that would do, rounded to the safe side.
 fn needed(limit: &Limit, to: f64) -> String {
-    let step = 10f64.powf(to.abs().log10().floor() - 3.0);
-    let safe = if limit.is_least { (to / step).floor() } else { (to / step).ceil() } * step;
-    significant(safe, DIGITS)
+    significant(limit.relaxed_to(to), DIGITS)
 }
 
 fn front(study: &Study) -> Vec<Block> {
-    let goals = study.wish.goals.iter().map(|goal| {
+    let goals = study.space.goals.iter().map(|goal| {
         let (name, _) = goal.figure.words();
         format!("{} {name}", if goal.is_maximised { "larger" } else { "smaller" })
     });
@@ -255,7 +292,7 @@ fn front(study: &Study) -> Vec<Block> {
         let breaks = match base.broken.is_empty() {
             true => "It keeps all limits.".to_owned(),
             false => {
-                let broken = study.wish.limits.iter().filter(|limit| base.broken.contains(&limit.key));
+                let broken = study.space.limits.iter().filter(|limit| base.broken.contains(&limit.key));
                 format!("It breaks: {}.", broken.map(limit_words).collect::<Vec<_>>().join("; "))
             }
         };
@@ -339,7 +376,7 @@ fn nearest(study: &Study) -> Vec<Block> {
             needed(&relaxed.limit, relaxed.to),
             relaxed.limit.figure.words().1.to_owned(),
         ];
-        if let Ok(rod) = study.wish.rod(relaxed.design.index) {
+        if let Ok(rod) = study.space.rod(relaxed.design.index) {
             cells.extend(shape_cells(&rod));
         }
         table.row(cells);
@@ -349,24 +386,35 @@ fn nearest(study: &Study) -> Vec<Block> {
         blocks.push(Block::Table(table));
     }
     if let Some((design, worst)) = &nearest.all_limits {
-        let shape = study.wish.rod(design.index).map_or_else(
-            |_| String::new(),
-            |rod| {
-                format!(
-                    " (L1 {} mm, L2 {} mm, tube {})",
-                    significant(rod.l1 / MM, 4),
-                    significant(rod.l2 / MM, 4),
-                    tube_of(study, design)
-                )
-            },
+        let mut heads = vec![
+            Column::text("limit"),
+            Column::in_row_unit("stated"),
+            Column::in_row_unit("this rod has"),
+            Column::units(),
+        ];
+        heads.extend(shape_columns());
+        let caption = format!(
+            "The design whose worst limit is broken by the smallest share, {} %: tube {}.",
+            significant(100.0 * worst, 2),
+            tube_of(study, design)
         );
-        blocks.push(Block::Paragraph(format!(
-            "The design that breaks its worst limit by the smallest share{shape} is {} % beyond it.",
-            significant(100.0 * worst, 2)
-        )));
+        let mut table = Table::new("nearest", caption, heads);
+        for (limit, value) in broken_by(study, design) {
+            let mut cells = vec![
+                limit_name(limit),
+                significant(limit.value, DIGITS),
+                significant(value, DIGITS),
+                limit.figure.words().1.to_owned(),
+            ];
+            if let Ok(rod) = study.space.rod(design.index) {
+                cells.extend(shape_cells(&rod));
+            }
+            table.row(cells);
+        }
+        blocks.push(Block::Table(table));
     }
     if blocks.is_empty() {
-        blocks.push(Block::Paragraph("No combination is a rod.".into()));
+        blocks.push(Block::Paragraph("No combination can be built.".into()));
     }
     blocks
 }
@@ -377,7 +425,7 @@ fn looked_at(study: &Study) -> Vec<Block> {
          where it keeps all others.";
     let mut table =
         Table::new("infeasible", caption, vec![Column::text("because of"), Column::number("rods", "")]);
-    for (limit, count) in study.wish.limits.iter().zip(&found.broken) {
+    for (limit, count) in study.space.limits.iter().zip(&found.broken) {
         table.row(vec![limit_words(limit), count.to_string()]);
     }
     for (why, count) in Impossible::ALL.iter().zip(found.impossible).filter(|(_, count)| *count > 0) {
@@ -386,11 +434,11 @@ fn looked_at(study: &Study) -> Vec<Block> {
     let mut blocks = vec![Block::Paragraph(format!(
         "{} of {} were looked at, with tubes from a catalogue of {}; {} all limits.",
         found.evaluated,
-        count(study.wish.combinations(), "combination"),
-        study.wish.tubes.len(),
+        count(study.space.combinations(), "combination"),
+        study.space.tubes.len(),
         verb(found.feasible)
     ))];
-    if !study.wish.limits.is_empty() || found.impossible.iter().any(|count| *count > 0) {
+    if !study.space.limits.is_empty() || found.impossible.iter().any(|count| *count > 0) {
         blocks.push(Block::Table(table));
     }
     blocks

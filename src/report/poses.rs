@@ -49,6 +49,7 @@ pub fn json(study: &PoseStudy) -> Value {
         "value_random_median": study.value_random,
         "value_is_better": if study.wanted.criterion.is_larger_better() { "larger" } else { "smaller" },
         "worth_random_poses": study.worth,
+        "unseen_combinations": study.unseen_combinations,
         "observability": {
             "o1": o1, "o2": o2, "o3": o3, "o4": o4, "o5": o5, "condition": study.observability.condition,
         },
@@ -114,6 +115,24 @@ pub fn files(study: &PoseStudy) -> Vec<(String, Vec<u8>)> {
     vec![("poses.csv".into(), text.into_bytes())]
 }
 
+fn warnings(study: &PoseStudy) -> Vec<String> {
+    let mut warnings: Vec<String> = study.campaign.warnings.iter().map(ToString::to_string).collect();
+    if study.unseen_combinations > 0 {
+        warnings.push(format!(
+            "{} of the {} parameters cannot be seen from any pose at {}: {} is that of the others, and the calibration \
+             leaves them as they are. More clamps would show them",
+            match study.unseen_combinations {
+                1 => "One combination".to_owned(),
+                count => format!("{count} combinations"),
+            },
+            study.known.len(),
+            if study.places.len() == 1 { "one clamp".to_owned() } else { format!("{} clamps", study.places.len()) },
+            study.wanted.criterion.name(),
+        ));
+    }
+    warnings
+}
+
 /// The report of `rodcal design poses`.
 pub fn report(study: &PoseStudy) -> Report {
     let pair = [
@@ -144,7 +163,7 @@ pub fn report(study: &PoseStudy) -> Report {
         title: format!("Poses for {}", study.campaign.file),
         headline: headline(study),
         cards: cards(study),
-        warnings: study.campaign.warnings.iter().map(ToString::to_string).collect(),
+        warnings: warnings(study),
         sections,
         ..Report::default()
     }

@@ -112,8 +112,11 @@ fn designs_are_ranked_by_the_accuracy_that_a_robot_will_have() {
     // the answer comes first
     let least = ranked.iter().flat_map(|one| ["none", "fea", "meas"].map(|mode| rms(one, mode)));
     let least = rodcal::units::significant(least.fold(f64::INFINITY, f64::min), 3);
-    let at = said.find(&format!("This robot will be wrong by {least} µm rms at best")).expect("it is said");
+    let at = said.find(&format!("leaves this robot the smallest error: {least} µm rms")).expect("it is said");
     assert!(at < said.find("The front").unwrap());
+    // with too few poses no rod can be measured: as `design poses` has it
+    let few = sandbox.run(&line.replace("--count 15", "--count 2"));
+    assert!(few.status == Some(2) && few.stdout.is_empty(), "{}", few.stderr);
     let half = sandbox.run("design rod design.toml --campaign campaigns/tx90-5/campaign.toml");
     assert!(half.status == Some(2) && half.stderr.contains("--objective"), "{}", half.stderr);
 }
@@ -132,7 +135,8 @@ fn the_front_does_not_depend_on_the_number_of_threads() {
 fn where_nothing_fits_it_says_what_would() {
     let sandbox = sandbox();
     sandbox.write("design.toml", &DESIGN.replace("= 900", "= 250"));
-    let answer = sandbox.run("design rod design.toml").succeeded();
+    let answer = sandbox.run("design rod design.toml");
+    assert_eq!(answer.status, Some(1), "{}", answer.stderr);
     assert!(
         answer.stdout.starts_with("None of 162 rods keeps all limits. One would do: relax max_mass_g to 3"),
         "{}",
@@ -140,6 +144,30 @@ fn where_nothing_fits_it_says_what_would() {
     );
     let json = sandbox.run("design rod design.toml --json").json();
     assert_eq!((&json["feasible"], &json["relax"][0]["constraint"]), (&0.into(), &"max_mass_g".into()));
+    assert_eq!(json["nearest"]["constraints"][0]["constraint"], "max_mass_g");
+
+    // two at once, each by name with what it would have to be
+    let two = DESIGN.replace("= 900", "= 10").replace("min_first_frequency_hz = 20", "min_reach_mm = 5000");
+    sandbox.write("design.toml", &two);
+    let in_one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = in_one_line(&sandbox.run("design rod design.toml").stdout);
+    assert!(said.contains("The nearest needs several at once: relax max_mass_g to"), "{said}");
+    assert!(said.contains("and min_reach_mm to"), "{said}");
+    let json = sandbox.run("design rod design.toml --json").json();
+    assert_eq!(json["relax"].as_array().unwrap().len(), 0);
+    let needed = json["nearest"]["constraints"].as_array().unwrap();
+    assert!(needed.len() == 2 && needed.iter().all(|one| one["needed"].is_number()), "{needed:?}");
+    assert!(json["nearest"]["rod"]["geometry"]["l1_mm"].is_number());
+
+    // no combination is a rod
+    sandbox.write("design.toml", &DESIGN.replace("gamma_deg", "bend_radius_mm = 700\ngamma_deg"));
+    let answer = sandbox.run("design rod design.toml");
+    assert_eq!(answer.status, Some(1));
+    assert!(
+        in_one_line(&answer.stdout).contains("can be built: the bend does not fit between the pipes"),
+        "{}",
+        answer.stdout
+    );
 }
 
 #[test]
@@ -164,6 +192,8 @@ fn an_empty_design_space_is_refused_and_nothing_is_written() {
         run,
         "design.toml:4:13: `geometry.gamma_deg` is \"right\"",
     );
+    refused(DESIGN, "design rod design.toml --resume nowhere/kept --out o", "a folder that exists");
+    assert!(!sandbox.path().join("nowhere").exists());
     refused(DESIGN, "design rod design.toml --refine 99 --out o", "designs of the front");
     let huge = DESIGN
         .replace("step = 25", "step = 0.01")

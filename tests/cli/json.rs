@@ -295,3 +295,21 @@ fn the_demo_as_json() {
     assert_keys(&json["calibration"], &["mode", "parameters", "residual", "validation"]);
     assert_eq!(json["comparison"]["modes"].as_array().unwrap().len(), 4);
 }
+
+/// t = ln 50/(ζω)
+#[test]
+fn settling_times_are_those_of_the_damping_that_was_stated() {
+    let sandbox = Sandbox::new();
+    let json = sandbox.run("compliance rods/5.toml --damping-percent 0.5 --json").json();
+    let list = |key: &str| -> Vec<f64> {
+        json[key].as_array().unwrap().iter().map(|one| one.as_f64().unwrap()).collect()
+    };
+    for (time, frequency) in list("settling_times_s").iter().zip(list("natural_frequencies_hz")) {
+        let expected = 50f64.ln() / (0.005 * std::f64::consts::TAU * frequency);
+        assert!((time / expected - 1.0).abs() < 1e-12, "{time} {expected}");
+    }
+    let said = sandbox.run("compliance rods/5.toml --damping-percent 0.5").succeeded().stdout;
+    assert!(said.contains("at 0.5 % damping"), "{said}");
+    let unknown = sandbox.run("compliance rods/5.toml --json").json();
+    assert!(unknown["settling_times_s"].is_null());
+}

@@ -3,7 +3,7 @@
 use super::{Answer, Sandbox};
 
 /// What is typed, how the error begins, and a word that tells what would be right.
-const CASES: [(&str, &str, &str); 31] = [
+const CASES: [(&str, &str, &str); 32] = [
     // arguments
     ("frobnicate", "unrecognized subcommand 'frobnicate'", "--help"),
     ("complianze rods/5.toml", "unrecognized subcommand 'complianze'", "'compliance'"),
@@ -21,6 +21,11 @@ const CASES: [(&str, &str, &str); 31] = [
     ("compliance rods/5.toml --contact-force nan", "invalid value 'nan'", "a force in N, 0 or more"),
     ("compliance rods/5.toml --contact-force inf", "invalid value 'inf'", "a force in N, 0 or more"),
     ("compliance rods/5.toml --contact-force -1", "invalid value '-1'", "a force in N, 0 or more"),
+    (
+        "compliance rods/5.toml --damping-percent 0",
+        "invalid value '0'",
+        "a damping in %, above 0 and below 100",
+    ),
     ("compliance rods/5.toml --load-station -1", "`station` is -1.000 mm", "0 to 675.000 mm"),
     ("compliance rods/5.toml --read-station nan", "`station` is NaN mm", "0 to 675.000 mm"),
     ("rig fit linear stiffness_data/5.csv --robust cauchy", "invalid value 'cauchy'", "huber, tukey"),

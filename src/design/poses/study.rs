@@ -7,6 +7,7 @@ use super::criterion::PoseCriterion;
 use super::limits::{PoseLimits, Surroundings};
 use super::order;
 use super::random::{Beside, beside};
+use super::seen::seen;
 use crate::calibration::campaign::{Campaign, Group, GroupName};
 use crate::calibration::{
     Compensation, Mode, Observability, Planned, default_mode, free_parameters, places, planned_setup,
@@ -17,8 +18,10 @@ use crate::optimal_design::{Measurements, choose, value};
 use crate::robot::{Parameter, Setup};
 
 /// What is known before the first pose where a criterion knows nothing: a share of what all
-/// candidates say.
-const FAINT: f64 = 1e-9;
+/// candidates say, for poses to be chosen one after another; and what is left of it in the value,
+/// which is that of the poses alone.
+const FAINT: f64 = 1e-13;
+const OF_FAINT: f64 = 0.01;
 
 /// What is asked for.
 #[derive(Debug, Clone)]
@@ -71,6 +74,9 @@ pub struct PoseStudy<'c> {
     pub value_random: f64,
     /// So many times as many random poses are worth as much; `None` beyond 20.
     pub worth: Option<f64>,
+    /// Combinations of the parameters that no pose shows at these places, and that O1 and O4 leave
+    /// out.
+    pub unseen_combinations: usize,
     /// Observability of the chosen poses.
     pub observability: Observability,
     /// Parameters by what will be known of them.
@@ -159,13 +165,16 @@ impl<'c> PoseStudy<'c> {
         let known = forecaster.known_before();
         let (measurements, before) = scaled(&all, &free, &known, &wanted, forecaster.budget.noise);
         let columns = measurements.columns();
-        let criterion = wanted.criterion.of_design(columns, &forecaster.weight(columns));
+        let unseen_combinations = all.rows().first().map_or(0, |block| block.ncols()) - columns;
+        let criterion =
+            wanted.criterion.of_design(columns, &forecaster.weight(columns + unseen_combinations));
         let numerical = || Error::Numerical {
             what: "the choice of poses",
             why: "the information of the poses is not positive definite".into(),
         };
         let mut chosen = choose(&measurements, &quotas, &before, &criterion, &|| progress(PoseStep::Choice))
             .ok_or_else(numerical)?;
+        let before = if wanted.criterion.is_index() { before * OF_FAINT } else { before };
         let own = value(&measurements, &chosen, &before, &criterion).ok_or_else(numerical)?;
         let Beside { median, worth } = beside(&measurements, &quotas, &before, &criterion, own);
         // ln |M| of the places alone: as many rows of one as there are poses
@@ -174,7 +183,7 @@ impl<'c> PoseStudy<'c> {
             false => 0.0,
         };
         let shown = |value: f64| {
-            let m = if wanted.criterion.is_index() { free.len() } else { columns };
+            let m = if wanted.criterion.is_index() { free.len() - unseen_combinations } else { columns };
             let constant = if wanted.criterion.is_index() { constant } else { 0.0 };
             wanted.criterion.shown(value, m, wanted.count, constant)
         };
@@ -199,6 +208,7 @@ impl<'c> PoseStudy<'c> {
             value: shown(own),
             value_random: shown(median),
             worth,
+            unseen_combinations,
             observability: planned.observability()?,
             known: free.iter().enumerate().map(of_parameter).collect(),
             forecast: forecaster.forecast(&ordered, mode)?,
@@ -263,6 +273,10 @@ fn scaled(
     // millimetres per millimetre, milliradian and µrad/(N·m)
     let units: Vec<f64> = free.iter().map(|&parameter| Planned::unit(parameter)).collect();
     let (measurements, _) = in_noise(all, &units, crate::units::MM, crate::units::MM);
+    let measurements = match seen(&measurements) {
+        Some(basis) => measurements.in_basis(&basis),
+        None => measurements,
+    };
     let norms = measurements.column_norms();
     let faint = norms.iter().map(|norm| FAINT * norm * norm);
     let before = DMatrix::from_diagonal(&nalgebra::DVector::from_iterator(norms.len(), faint));
@@ -293,4 +307,66 @@ fn in_order(poses: Vec<(usize, Vec<f64>)>, places: usize) -> Vec<(usize, Vec<f64
         own.into_iter().map(move |q| (place, q))
     });
     sorted.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn study(campaign: &Campaign, count: usize, criterion: PoseCriterion) -> PoseStudy<'_> {
+        let budget = Budget::of(campaign, Some(17.6e-6), Some(30e-6)).unwrap();
+        let wanted = Wanted {
+            count,
+            criterion,
+            source: Source::Generated(300),
+            limits: PoseLimits::default(),
+            mode: None,
+            at: Where::Validation,
+            seed: 1,
+        };
+        PoseStudy::new(campaign, wanted, budget, &|_| {}).unwrap()
+    }
+
+    /// Of few clamps, too, where some combinations of the parameters are seen by no pose.
+    #[test]
+    fn the_value_is_the_index_of_the_poses_and_nothing_else() {
+        for clamps in [5, 2, 1] {
+            let mut campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref()).unwrap();
+            campaign.clamps.truncate(clamps);
+            campaign.measurements.rows.clear();
+            for criterion in [PoseCriterion::O1, PoseCriterion::O4] {
+                let study = study(&campaign, 40, criterion);
+                let sigma = singular_values(&study);
+                let n = sigma.len() - study.unseen_combinations;
+                let (kept, left_out) = sigma.split_at(n);
+                assert!(left_out.iter().all(|s| *s < 1e-5 * sigma[0]), "{clamps}: {sigma:?}");
+                let expected = match criterion {
+                    PoseCriterion::O1 => {
+                        (kept.iter().map(|s| s.ln()).sum::<f64>() / n as f64).exp() / 40f64.sqrt()
+                    }
+                    _ => kept[n - 1].powi(2) / kept[0],
+                };
+                assert!(
+                    (study.value / expected - 1.0).abs() < 1e-2,
+                    "{clamps} {criterion:?}: {} {expected} {sigma:?}",
+                    study.value
+                );
+                assert!(study.worth.is_some_and(|worth| worth >= 1.0), "{:?}", study.worth);
+            }
+        }
+    }
+
+    fn singular_values(study: &PoseStudy) -> Vec<f64> {
+        let campaign = study.campaign;
+        let mode = default_mode(campaign);
+        let compensation = Compensation::new(campaign, mode).unwrap();
+        let free = free_parameters(campaign, &study.setup, &compensation);
+        let planned =
+            Planned::new(study.setup.clone(), &free, &compensation, &study.places, false, &study.chosen);
+        let rows = planned.rows();
+        let j = DMatrix::from_fn(3 * rows.len(), free.len(), |i, k| {
+            rows[i / 3][(i % 3, k)] * Planned::unit(free[k]) / crate::units::MM
+        });
+        crate::linalg::thin_svd(&j).unwrap().singular_values.iter().copied().collect()
+    }
 }

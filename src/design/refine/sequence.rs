@@ -49,7 +49,7 @@ impl Search<'_> {
             if self.space.possible(rod).is_err() || !is_tube(rod) {
                 return Ok(None);
             }
-            let mut figures = Figures::of(rod, &mut solver)?.with_frequency(rod)?;
+            let mut figures = Figures::of(rod, &mut solver).with_frequency(rod)?;
             figures.set(Figure::Price, self.price[0] * rod.l1 + self.price[1] * rod.l2);
             Ok(Some(figures))
         };

@@ -52,12 +52,11 @@ pub(super) fn lengths(space: &DesignSpace, rod: &Rod) -> Vec<Variable> {
     ];
     let varies = |(k, (number, values, now)): (usize, (NominalNumber, &Vec<f64>, f64))| {
         let positive = || values.iter().copied().filter(|value| *value > 0.0);
-        let (low, high) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
-        (space.is_range[k] && low < high && now > 0.0).then(|| Variable {
-            moves: vec![(number, 1.0)],
-            low,
-            high,
-        })
+        let least = positive().fold(f64::INFINITY, f64::min);
+        let [from, high] = space.ranges[k]?;
+        // of what may be nothing, the least that is something
+        let low = if from > 0.0 { from } else { least.min(high) };
+        (low < high && now > 0.0).then(|| Variable { moves: vec![(number, 1.0)], low, high })
     };
     all.into_iter().enumerate().filter_map(varies).collect()
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::design::Goal;
+use crate::design::nearest::Relaxed;
 
 const TEXT: &str = "
 [geometry]
@@ -39,12 +40,12 @@ fn the_search_is_that_of_looking_at_every_rod() {
     let count = space.combinations();
     assert_eq!(count, 3 * 7 * 2 * 4 * 2 * 9);
     let mut solver = TipSolver::default();
-    let (mut front, mut feasible, mut impossible) = (Front::new(&space.goals), 0, [0; 3]);
+    let (mut front, mut feasible, mut impossible) = (Front::new(&space.goals), 0, [0; Impossible::COUNT]);
     for index in 0..count {
         match space.rod(index) {
             Err(why) => impossible[why as usize] += 1,
             Ok(rod) => {
-                let figures = Figures::of(&rod, &mut solver).unwrap().with_frequency(&rod).unwrap();
+                let figures = Figures::of(&rod, &mut solver).with_frequency(&rod).unwrap();
                 let mut figures = figures;
                 figures.set(Figure::Price, space.price(&space.choice(index)));
                 if space.limits.iter().all(|limit| limit.is_kept(&figures)) {
@@ -75,6 +76,63 @@ fn where_nothing_fits_the_limit_that_would_do_is_named() {
         let found = search(&space(&text), Searched::All, &|_| {}).unwrap();
         assert_eq!(found.feasible.min(1), count, "{limit}");
     }
+}
+
+/// Also where several limits must give, one of them the frequency.
+#[test]
+fn the_nearest_design_is_that_of_looking_at_every_figure() {
+    for (frequency, mass, moment) in [(1000, 400, 9.0), (900, 50, 0.2), (25, 50, 0.1), (60, 10, 9.0)] {
+        let text = TEXT
+            .replace("= 25", &format!("= {frequency}"))
+            .replace("= 700", &format!("= {mass}"))
+            .replace("= 2.5", &format!("= {moment}"));
+        let space = space(&text);
+        let (mut solver, mut nearest) = (TipSolver::default(), Nearest::default());
+        for index in 0..space.combinations() {
+            let Ok(rod) = space.rod(index) else { continue };
+            let figures = Figures::of(&rod, &mut solver).with_frequency(&rod).unwrap();
+            let figures = figures.with(Figure::Price, space.price(&space.choice(index)));
+            let broken: Vec<&Limit> = space.limits.iter().filter(|limit| !limit.is_kept(&figures)).collect();
+            assert!(!broken.is_empty());
+            nearest.offer(Design { index, figures }, &broken);
+        }
+        let found = search(&space, Searched::All, &|_| {}).unwrap().nearest.unwrap();
+        assert_eq!(found.all_limits, nearest.all_limits);
+        let in_order = |mut all: Vec<Relaxed>| {
+            all.sort_by_key(|one| one.limit.key);
+            all
+        };
+        assert_eq!(in_order(found.one_limit), in_order(nearest.one_limit));
+    }
+}
+
+/// A pipe of 50 mm has no room at a corner 5 mm above the flange.
+#[test]
+fn pipes_that_would_end_within_each_other_are_no_rods() {
+    let space = space(
+        "[geometry]\nl1_mm = [5, 19, 21, 100]\nl2_mm = 300\ngamma_deg = [30, 90, 180]\n[catalogue]\nfile = \"t\"\n\
+         [objectives]\nminimise = [\"c_rod_um\"]\n",
+    );
+    let mut possible: Vec<(f64, f64, f64)> = (0..space.combinations())
+        .filter_map(|index| space.rod(index).ok())
+        .filter(|rod| rod.pipe1.section.height() > 0.035)
+        .map(|rod| (rod.gamma, rod.l1, rod.pipe1.section.height()))
+        .collect();
+    possible.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    // tubes of 40 mm: at 30° the corner takes 74.6 mm of each pipe, at 90° 20 mm, straight on
+    // nothing
+    let expected = [
+        (30.0, 100.0),
+        (90.0, 21.0),
+        (90.0, 100.0),
+        (180.0, 5.0),
+        (180.0, 19.0),
+        (180.0, 21.0),
+        (180.0, 100.0),
+    ];
+    let found: Vec<(f64, f64)> =
+        possible.iter().map(|(gamma, l1, _)| (gamma.to_degrees().round(), (1e3 * l1).round())).collect();
+    assert_eq!(found, expected);
 }
 
 #[test]

@@ -21,7 +21,7 @@ use crate::units::{DEG, GRAM, MM};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct RawWish {
+struct RawSpace {
     geometry: RawGeometry,
     #[serde(default)]
     material: MaterialTable,
@@ -140,7 +140,7 @@ impl DesignSpace {
         catalogue: &dyn Fn(&str) -> Result<(String, String)>,
     ) -> Result<DesignSpace> {
         let toml = TomlText::new(file, text);
-        let raw: RawWish = toml.parse(REQUIRED)?;
+        let raw: RawSpace = toml.parse(REQUIRED)?;
         let geometry = &raw.geometry;
         let mut check = Check { toml, warnings: Vec::new() };
         let mut materials = built_in_materials();
@@ -173,7 +173,11 @@ impl DesignSpace {
             geometry.bend_radius_mm.as_ref(),
             raw.tip.as_ref().map(|tip| &tip.mass_g),
         ];
-        let is_range = keys.map(|raw| raw.is_some_and(|raw| matches!(raw.get_ref(), Raw::Range(_))));
+        let units = [MM, MM, DEG, MM, GRAM];
+        let ranges = std::array::from_fn(|k| {
+            let ends = keys[k].and_then(|raw| raw.get_ref().ends());
+            ends.map(|ends| ends.map(|end| end * units[k]))
+        });
         let space = DesignSpace {
             file: file.to_owned(),
             content: format!("{text}\n{of_catalogue}"),
@@ -183,7 +187,7 @@ impl DesignSpace {
             bend_radius,
             bend_flexibility: flexibility.unwrap_or_default(),
             tip_mass,
-            is_range,
+            ranges,
             tubes,
             is_one_tube: raw.catalogue.same_tube.unwrap_or(true),
             masses: masses.collect::<Result<_>>()?,

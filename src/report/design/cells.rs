@@ -18,10 +18,11 @@ pub fn figures_json(design: &Design) -> Map<String, Value> {
 
 /// The figures of a table: the goals first, then the others that every design has.
 pub fn columns(study: &Study) -> Vec<Figure> {
-    let mut figures: Vec<Figure> = study.wish.goals.iter().map(|goal| goal.figure).collect();
+    let mut figures: Vec<Figure> = study.space.goals.iter().map(|goal| goal.figure).collect();
     let more = [Figure::CRod, Figure::Mass, Figure::FirstFrequency, Figure::Reach];
-    figures
-        .extend(more.into_iter().filter(|figure| study.wish.goals.iter().all(|goal| goal.figure != *figure)));
+    figures.extend(
+        more.into_iter().filter(|figure| study.space.goals.iter().all(|goal| goal.figure != *figure)),
+    );
     figures
 }
 
@@ -57,7 +58,7 @@ pub fn half_of(known: &KnownDesign, figure: Figure) -> Option<f64> {
 
 /// The names of a design's tubes.
 pub fn tube_of(study: &Study, design: &Design) -> String {
-    study.wish.tubes_of(design.index).join(" + ")
+    study.space.tubes_of(design.index).join(" + ")
 }
 
 /// `mass, at most`.

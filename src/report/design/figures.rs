@@ -72,7 +72,7 @@ pub fn front(study: &Study) -> Option<Figure> {
         });
     }
     let (x, y) = (first.figure.words().0, second.figure.words().0);
-    let more = if study.wish.goals.len() > 2 {
+    let more = if study.space.goals.len() > 2 {
         " Designs that seem bettered here are better in another goal."
     } else {
         ""

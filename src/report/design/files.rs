@@ -30,7 +30,7 @@ pub fn files(study: &Study) -> Result<Vec<(String, Vec<u8>)>> {
     heads.extend(halves.iter().map(|figure| Column::number(format!("{}_half_95", figure.key()), "")));
     let mut table = Table::new("front", "", heads);
     for (place, design) in study.found.front.iter().enumerate() {
-        let Ok(rod) = study.wish.rod(design.index) else { continue };
+        let Ok(rod) = study.space.rod(design.index) else { continue };
         let mut cells = vec![(place + 1).to_string(), tube_of(study, design)];
         let shape = [rod.l1 / MM, rod.l2 / MM, rod.gamma / DEG, rod.bend_radius / MM, rod.tip_mass / GRAM];
         cells.extend(shape.map(|value| significant(value, 9)));
@@ -48,7 +48,7 @@ pub fn files(study: &Study) -> Result<Vec<(String, Vec<u8>)>> {
     let mut files = vec![("designs.csv".to_owned(), table.csv()?.into_bytes())];
     let above = [format!(
         "A design for {}; its numbers are those of the design file and its catalogue.",
-        study.wish.file
+        study.space.file
     )];
     let of_rod = |shown: &Shown| {
         (format!("design-{:03}.toml", shown.place + 1), shown.rod.to_toml(&above).into_bytes())

@@ -33,7 +33,8 @@ pub fn for_robot_json(found: &ForRobot) -> Value {
             "rms_um": proxy.rms.map(|rms| rms / UM),
         })
     });
-    json!({ "ranked": ranked.collect::<Vec<_>>(), "c_rod_as_proxy": proxies.collect::<Vec<_>>() })
+    let [designs, front] = found.of_front;
+    json!({ "designs_ranked": designs, "front": front, "ranked": ranked.collect::<Vec<_>>(), "c_rod_as_proxy": proxies.collect::<Vec<_>>() })
 }
 
 /// Designs by the accuracy that the robot will have.
@@ -57,7 +58,11 @@ pub fn for_robot_section(found: &ForRobot) -> Section {
         cells.push(one.forecast.as_ref().err().cloned().unwrap_or_default());
         table.row(cells);
     }
-    let mut blocks = Vec::new();
+    let mut blocks = vec![Block::Paragraph(
+        "Only designs of this front were ranked. It is that of the objectives of the design file, none of which is this \
+         robot's error: a rod that is not on it may be better for this robot."
+            .into(),
+    )];
     let proxies = found.proxies.iter().map(|proxy| {
         let [low, high] = proxy.rms;
         let what = match (is_alike(proxy), proxy.interval) {
@@ -97,11 +102,17 @@ fn best(found: &ForRobot) -> Option<(&str, Mode, f64)> {
 /// What is to be expected of the robot, for the headline: nothing where no rod can be measured.
 pub fn for_robot_headline(found: &ForRobot) -> String {
     let Some((name, mode, rms)) = best(found) else {
-        return "None of these rods can be measured with this robot.".into();
+        return String::new();
     };
     let um = |size: f64| significant(size / UM, 3);
+    let [ranked, front] = found.of_front;
+    let of = match ranked == front {
+        true => format!("the {front} designs of the front"),
+        false => format!("{ranked} designs of a front of {front}"),
+    };
+    let of = if front == 1 { "the one design of the front".to_owned() } else { of };
     let best = format!(
-        "This robot will be wrong by {} µm rms at best, with {name} in mode {}",
+        "Of {of}, {name} leaves this robot the smallest error: {} µm rms in mode {}",
         um(rms),
         mode.name()
     );

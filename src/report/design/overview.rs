@@ -14,7 +14,7 @@ pub fn cards(study: &Study) -> Vec<Card> {
     let Some(first) = found.front.first() else { return vec![kept.toned(Tone::Attention)] };
     let front = found.front.len().to_string();
     let mut cards = vec![kept, Card::new("On the front", front, "bettered by none in every goal")];
-    for goal in &study.wish.goals {
+    for goal in &study.space.goals {
         let value = |design: &Design| design.figures.get(goal.figure).unwrap_or(f64::NAN);
         let is_better = |one: &Design, than: &Design| match goal.is_maximised {
             true => value(one) > value(than),
@@ -39,12 +39,12 @@ pub fn cards(study: &Study) -> Vec<Card> {
 
 /// One sentence each.
 pub fn warnings(study: &Study) -> Vec<String> {
-    let mut warnings: Vec<String> = study.wish.warnings.iter().map(ToString::to_string).collect();
-    if study.found.evaluated < study.wish.combinations() {
+    let mut warnings: Vec<String> = study.space.warnings.iter().map(ToString::to_string).collect();
+    if study.found.evaluated < study.space.combinations() {
         warnings.push(format!(
             "{} of {} combinations were looked at: better rods may be among the others",
             study.found.evaluated,
-            study.wish.combinations()
+            study.space.combinations()
         ));
     }
     let soft = study.found.front.iter().filter(|design| is_beyond_linear(study, design)).count();
@@ -64,5 +64,5 @@ pub fn warnings(study: &Study) -> Vec<String> {
 fn is_beyond_linear(study: &Study, design: &Design) -> bool {
     let entry = |figure: Figure| design.figures.get(figure).unwrap_or(0.0) * UM;
     let most = entry(Figure::CgMax).max(entry(Figure::CfMax) * paper_contact_force());
-    study.wish.rod(design.index).is_ok_and(|rod| most > LINEAR_SHARE * rod.length())
+    study.space.rod(design.index).is_ok_and(|rod| most > LINEAR_SHARE * rod.length())
 }

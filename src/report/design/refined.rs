@@ -3,14 +3,14 @@
 use serde_json::{Map, Value, json};
 
 use super::cells::{DIGITS, columns, figures_json, shape_cells, shape_columns};
-use crate::design::{Better, Design, Figures, Goal, Refined, Study, Wish};
+use crate::design::{Better, Design, DesignSpace, Figures, Goal, Refined, Study};
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};
 use crate::rod::{Pipe, Rod};
 use crate::units::{MM, significant};
 
 /// What the JSON has of it.
-pub fn json(wish: &Wish, found: &Refined) -> Value {
+pub fn json(space: &DesignSpace, found: &Refined) -> Value {
     let of_better = |better: &Option<Better>| {
         better.as_ref().map(|better| {
             let mut object = figures_json(&Design { index: 0, figures: better.figures });
@@ -21,7 +21,7 @@ pub fn json(wish: &Wish, found: &Refined) -> Value {
             object
         })
     };
-    let weights = wish.goals.iter().zip(&found.weights).filter(|(_, weight)| **weight > 0.0);
+    let weights = space.goals.iter().zip(&found.weights).filter(|(_, weight)| **weight > 0.0);
     let goal: Map<String, Value> =
         weights.map(|(goal, weight)| (goal.figure.key().to_owned(), (*weight).into())).collect();
     json!({
@@ -60,9 +60,9 @@ pub fn section(study: &Study, found: &Refined) -> Section {
         table.row(cells);
     };
     if let Some(design) = study.found.front.get(found.place)
-        && let Ok(rod) = study.wish.rod(design.index)
+        && let Ok(rod) = study.space.rod(design.index)
     {
-        let tubes = study.wish.tubes_of(design.index).join(" + ");
+        let tubes = study.space.tubes_of(design.index).join(" + ");
         row(&format!("design {}", found.place + 1), &rod, tubes, &design.figures);
     }
     let named = |better: &Better| match better.tubes.is_empty() {
@@ -101,7 +101,7 @@ pub fn section(study: &Study, found: &Refined) -> Section {
 
 /// What is bettered: "c_rod", or "the mean of c_rod (weight 0.67) and mass (weight 0.33)".
 fn goal_words(study: &Study, found: &Refined) -> String {
-    let weighed = study.wish.goals.iter().zip(&found.weights).filter(|(_, weight)| **weight > 0.0);
+    let weighed = study.space.goals.iter().zip(&found.weights).filter(|(_, weight)| **weight > 0.0);
     let words = |(goal, weight): (&Goal, &f64)| (goal.figure.words().0, significant(*weight, 2));
     let all: Vec<(&str, String)> = weighed.map(words).collect();
     match &all[..] {
@@ -116,7 +116,7 @@ fn goal_words(study: &Study, found: &Refined) -> String {
 
 /// What is sure of the optimum and what is not.
 fn proven(study: &Study, found: &Refined) -> String {
-    let grid = match study.found.evaluated == study.wish.combinations() {
+    let grid = match study.found.evaluated == study.space.combinations() {
         true => "No rod of the grid is better: all were looked at.",
         false => "Of the grid only some rods were looked at.",
     };

@@ -103,6 +103,7 @@ impl Pipe {
             shear_modulus: lift(material.shear_modulus),
             density: lift(material.density),
             poisson_ratio: lift(material.poisson_ratio),
+            is_shear_modulus_derived: material.is_shear_modulus_derived,
             yield_strength: material.yield_strength.map(lift),
             shear_coefficient_factor: lift(material.shear_coefficient_factor),
             standard_uncertainty: material.standard_uncertainty,

@@ -57,6 +57,18 @@ impl Measurements {
         }
     }
 
+    /// The same measurements of other unknowns: each of the old ones is a sum of these, a row of
+    /// `basis`.
+    pub fn in_basis(&self, basis: &DMatrix<f64>) -> Measurements {
+        let columns = basis.ncols();
+        let mut rows = Vec::with_capacity(3 * self.len() * columns);
+        for row in self.rows.chunks(self.columns.max(1)) {
+            let entry = |k: usize| row.iter().zip(basis.column(k).iter()).map(|(a, b)| a * b).sum::<f64>();
+            rows.extend((0..columns).map(entry));
+        }
+        Measurements { columns, rows, groups: self.groups.clone() }
+    }
+
     /// Norms of the columns over all measurements; 1 for a column of zeros.
     pub fn column_norms(&self) -> Vec<f64> {
         let mut squares = vec![0.0; self.columns];

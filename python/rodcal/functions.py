@@ -224,12 +224,9 @@ def predict(
     >>> predict(arm, [[0.0, 90.0]]).tips_mm.round(9).tolist()
     [[400.0, 300.0, 0.0]]
     """
-    joints = np.atleast_2d(np.asarray(joints_deg, dtype=np.float64))
-    if joints.ndim != 2:
-        found, expected = f"of shape {joints.shape}", "an array of shape (n, joints)"
-        raise InputError(f"`joints_deg` is {found}, expected {expected}", found=found, expected=expected)
-    tool = None if tool_mm is None else [float(x) for x in tool_mm]
     native = as_robot(robot)._native
+    joints = joint_array(joints_deg, len(native.columns), "`joints_deg`")
+    tool = None if tool_mm is None else [float(x) for x in tool_mm]
     with Told(progress, "predicting") as tell:
         return PredictionResult(_rodcal.predict(native, joints, tool, aligned, tell))
 

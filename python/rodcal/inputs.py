@@ -51,7 +51,7 @@ class Rod:
     @classmethod
     def from_toml(cls, text: str) -> Rod:
         """A rod from the text of a rod file."""
-        return cls._of(_rodcal.Rod.from_text("<rod>", text))
+        return cls._of(_rodcal.Rod.from_text("<toml>", text))
 
     @classmethod
     def _of(cls, native: _rodcal.Rod) -> Rod:
@@ -201,7 +201,7 @@ class Robot:
     ) -> Robot:
         """A robot from the text of a robot file or of a URDF, with the text of what stands beside it."""
         beside = None if effects is None else ("<effects>", effects)
-        return cls._of(_rodcal.Robot.from_text("<robot>", text, base_link, tip_link, beside, None))
+        return cls._of(_rodcal.Robot.from_text("<text>", text, base_link, tip_link, beside, None))
 
     @classmethod
     def _of(cls, native: _rodcal.Robot) -> Robot:

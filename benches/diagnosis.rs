@@ -70,7 +70,8 @@ fn campaign(poses_per_clamp: usize) -> Campaign {
     let robot = Robot::from_text("tx90.toml", &format!("{nominal}\n{ERROR}"), None, None).unwrap();
     let rod = Rod::from_toml("rod.toml", &rod_text).unwrap();
     let model = Compliance::of_model(&rod, &Physics::default(), DEFAULT_ELEMENTS).unwrap();
-    let plan = Plan { poses_per_clamp, ..Plan::default() };
+    let mut plan = Plan::default();
+    plan.poses_per_clamp = poses_per_clamp;
     let files = campaign_files(&simulate(&robot, &rod, &model, &plan).unwrap(), "builtin:tx90", "rod.toml");
     let find = |wanted: &str| match wanted {
         "rod.toml" => rod_text.clone(),
@@ -86,7 +87,7 @@ fn diagnosis_of_a_campaign(c: &mut Criterion) {
         let campaign = campaign(poses_per_clamp);
         let (poses, options) = (campaign.measurements.len(), Options::default());
         group.bench_function(BenchmarkId::new("diagnose", poses), |b| {
-            b.iter(|| black_box(calibration::diagnose(&campaign, Mode::Fea, &options).unwrap()));
+            b.iter(|| black_box(calibration::diagnose_as_recorded(&campaign, Mode::Fea, &options).unwrap()));
         });
         group.bench_function(BenchmarkId::new("calibrate", poses), |b| {
             b.iter(|| black_box(calibrate(&campaign, Mode::Fea, &options).unwrap()));

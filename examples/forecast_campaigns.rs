@@ -95,13 +95,9 @@ fn campaign(seed: u64) -> Result<Happened> {
     }
     let model = Compliance::of_model(&built, &Physics::default(), 20)?;
     let clamps = CLAMPS[random.index(3)];
-    let plan = Plan {
-        seed: seed + 1,
-        poses_per_clamp: 6 + random.index(15),
-        repeatability: random.uniform(10e-6, 60e-6),
-        clamp_error: 3f64.sqrt() * clamps,
-        ..Plan::default()
-    };
+    let mut plan = Plan::default().with_seed(seed + 1).with_clamp_error(3f64.sqrt() * clamps);
+    plan.poses_per_clamp = 6 + random.index(15);
+    plan.repeatability = random.uniform(10e-6, 60e-6);
     let (file, text_of_robot) = Robot::builtin("tx90")
         .ok_or(Error::Numerical { what: "the example", why: "the program has no TX90".into() })?;
     let robot = Robot::from_text(file, text_of_robot, None, None)?;

@@ -27,8 +27,7 @@ pub fn files(project: &Path) -> Vec<(String, String)> {
     let robot = Robot::from_text(name, text, None, None).unwrap();
     let rod = Rod::read(&project.join("rods/5.toml")).unwrap();
     let model = Compliance::of_model(&rod, &Physics::default(), DEFAULT_ELEMENTS).unwrap();
-    let plan =
-        Plan { seed: SEED, poses_per_clamp: 12, validation_poses: 30, rod_factor: R_ROD, ..Plan::default() };
+    let plan = Plan::of_poses(12, 30).with_seed(SEED).with_rod_factor(R_ROD);
     let simulation = simulate(&robot, &rod, &model, &plan).unwrap();
     campaign_files(&simulation, "builtin:tx90", "../../rods/5.toml")
         .into_iter()

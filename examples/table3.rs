@@ -209,7 +209,7 @@ fn simulated(runs: &[Run], variant: usize) -> Vec<String> {
 }
 
 fn run(robot: &Robot, text: &str, rod: &Rod, model: &Compliance, r_rod: f64, seed: u64) -> Run {
-    let plan = Plan { seed, rod_factor: r_rod, ..Plan::default() };
+    let plan = Plan::default().with_seed(seed).with_rod_factor(r_rod);
     let simulation = simulate(robot, rod, model, &plan).unwrap();
     let campaign = campaign(&simulation, text);
     let world = World { truth: &simulation.truth, rod: Some((rod, simulation.compliance)), force: true };
@@ -219,12 +219,13 @@ fn run(robot: &Robot, text: &str, rod: &Rod, model: &Compliance, r_rod: f64, see
     let mut all = vec![judged(&campaign)];
     let mut quiet = campaign.clone();
     quiet.measurements.targets = Targets::Points(tips.clone());
-    let short = Setup { tool: Vector3::new(0.0, 0.0, 0.12), ..simulation.truth.clone() };
+    let mut short = simulation.truth.clone();
+    short.tool = Vector3::new(0.0, 0.0, 0.12);
     let bare = World { truth: &short, rod: None, force: false };
     quiet.validation.as_mut().unwrap().targets = Targets::Points(bare.tips(&simulation.validation));
     all.push(judged(&quiet));
 
-    let misplaced = Plan { clamp_error: 43.0 * UM, ..plan.clone() };
+    let misplaced = plan.clone().with_clamp_error(43.0 * UM);
     all.push(judged(&self::campaign(&simulate(robot, rod, model, &misplaced).unwrap(), text)));
 
     let mut untouched = campaign.clone();
@@ -233,7 +234,7 @@ fn run(robot: &Robot, text: &str, rod: &Rod, model: &Compliance, r_rod: f64, see
     untouched.contact_force = None;
     all.push(judged(&untouched));
 
-    let few = Plan { poses_per_clamp: 6, ..plan };
+    let few = Plan::of_poses(6, plan.validation_poses).with_seed(seed).with_rod_factor(r_rod);
     let mut few = self::campaign(&simulate(robot, rod, model, &few).unwrap(), text);
     all.push(judged(&few));
 
@@ -340,7 +341,7 @@ impl World<'_> {
             let mut torque = vec![0.0; recording.joint_count];
             for _ in 0..5 {
                 kinematics.update(recording.joints(row), &torque);
-                kinematics.torques(&Loads { gravity, payload, tip_force }, &mut torque);
+                kinematics.torques(&Loads::new(gravity, payload, tip_force), &mut torque);
             }
             kinematics.update(recording.joints(row), &torque);
             see(&kinematics, &torque, gravity, tip_force);

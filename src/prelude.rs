@@ -7,7 +7,8 @@
 //! | model | [`Rod`] | [`Compliance`] |
 //! | rig | [`Readings`] | [`rig::fit`]: lines, r, the measured compliance |
 //! | calibration | [`Campaign`] | [`calibrate`], [`cross_validate`], [`compare`], [`write_back`] |
-//! | diagnosis | readings or campaign | [`diagnosis`]: what the model left out |
+//! | diagnosis | readings | [`diagnosis::rig::diagnose`]: what the model left out |
+//! | | campaign | [`mend`], then [`Mended::diagnose`] |
 //!
 //! Types that only describe a detail of a result stay in their modules.
 
@@ -18,6 +19,7 @@ pub use crate::calibration::{
     default_mode, write_back,
 };
 pub use crate::compliance::{Compliance, DEFAULT_ELEMENTS, paper_contact_force};
+pub use crate::diagnosis::calibration::{Mended, Neighbours, mend};
 pub use crate::error::{Error, Result};
 pub use crate::material::Material;
 pub use crate::rig::readings::{Axis, Direction, Reading, Readings};

@@ -35,6 +35,7 @@ mod uncertainty;
 mod urdf;
 mod write;
 
+pub use crate::units::Unit;
 pub use calibrated::CalibratedRange;
 pub use effect::Effect;
 pub use effects_file::{corrections_csv, corrections_from_csv};
@@ -42,7 +43,7 @@ pub use file::is_urdf;
 pub use kinematics::{JointFrames, Kinematics};
 pub use law::{JointLawVariable, LawPlace, RobotLaw};
 pub use minimal::minimal_parameters;
-pub use parameter::{Parameter, Unit};
+pub use parameter::{Parameter, ParameterGroup};
 pub use predict::{PredictedTip, PredictionQuery};
 pub use setup::Setup;
 pub use standard_uncertainty::StandardUncertainty;

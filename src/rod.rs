@@ -12,7 +12,7 @@ mod uncertainty;
 mod warnings;
 mod write;
 
-pub use law::{LawConstant, LawMemory, LawVariable, MemoryConstant, RodLaw};
+pub use law::{LawConstant, LawMemory, LawVariable, MemoryConstant, RodLaw, RodLawPlace};
 pub use nominal::{Feature, Nominal, NominalNumber, Part, SectionConstant};
 pub use uncertainty::StandardUncertainty;
 pub use warnings::Warning;

@@ -188,11 +188,8 @@ fn torques_are_the_work_of_gravity_and_tip_force() {
     let robot = robot();
     let setup = setup(&robot);
     let payload = Body { mass: 0.8, centre: Vector3::new(0.1, 0.0, 0.2) };
-    let loads = Loads {
-        gravity: setup.base().rotation * robot.gravity,
-        payload: Some(payload),
-        tip_force: Vector3::new(1.1, -2.0, 3.0),
-    };
+    let gravity = setup.base().rotation * robot.gravity;
+    let loads = Loads::new(gravity, Some(payload), Vector3::new(1.1, -2.0, 3.0));
     let work = |q: &[f64]| {
         let mut kinematics = Kinematics::new(&setup);
         kinematics.update(q, &[0.0; 4]);

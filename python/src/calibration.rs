@@ -64,7 +64,7 @@ pub fn calibrate<'py>(
     let own = campaign.get();
     let campaign = &own.campaign;
     let mode = mode_named(py, mode)?.unwrap_or_else(|| default_mode(campaign));
-    let options = Options { robust: robust_named(py, robust)?, prune };
+    let options = Options::default().with_robust(robust_named(py, robust)?).with_pruning(prune);
     let folds = folds.map(|folds| within(py, "folds", folds, 2, 1000)).transpose()?;
     let (answer, calibration) = run(py, progress, Progress::of_jobs(), |_| match &held_out {
         None => answer::calibrate(campaign, mode, &options, folds, &neighbours(own)),
@@ -107,12 +107,9 @@ pub fn compare(
 
 /// How modes are compared.
 pub fn compared(py: Python<'_>, robust: &str, draws: usize, seed: u64) -> PyResult<CompareOptions> {
-    Ok(CompareOptions {
-        calibration: Options { robust: robust_named(py, robust)?, ..Options::default() },
-        draws: within(py, "draws", draws, 50, 100_000)?,
-        seed,
-        ..CompareOptions::default()
-    })
+    let calibration = Options::default().with_robust(robust_named(py, robust)?);
+    let draws = within(py, "draws", draws, 50, 100_000)?;
+    Ok(CompareOptions::default().with_calibration(calibration).with_draws(draws).with_seed(seed))
 }
 
 #[pyfunction]
@@ -210,10 +207,8 @@ pub fn predict(
     }
     run(py, progress, Progress::of_jobs(), |_| {
         let moved = robot.after_moves(&values);
-        let query = |(row, joints): (usize, &[f64])| PredictionQuery {
-            pose: (row + 1).to_string(),
-            joints: joints.to_vec(),
-        };
+        let query =
+            |(row, joints): (usize, &[f64])| PredictionQuery::new((row + 1).to_string(), joints.to_vec());
         let poses = moved.chunks(width).enumerate().map(query).collect();
         let tool = tool_mm.map(|xyz| xyz.map(|x| x * MM).into());
         let tool = tool.unwrap_or_else(|| robot.tip.map(|tip| tip.at).unwrap_or_default());
@@ -246,14 +241,10 @@ pub fn simulate<'py>(
         Some((name, text)) => planned_poses(&robot.robot, name, text).or_raise(py)?,
         None => Vec::new(),
     };
-    let plan = Plan {
-        seed,
-        planned,
-        poses_per_clamp: within(py, "poses", poses, 1, 1000)?,
-        validation_poses: within(py, "validation", validation, 4, 10_000)?,
-        rod_factor: r_rod,
-        ..Plan::default()
-    };
+    let per_clamp = within(py, "poses", poses, 1, 1000)?;
+    let plan = Plan::of_poses(per_clamp, within(py, "validation", validation, 4, 10_000)?);
+    let mut plan = plan.with_seed(seed).with_rod_factor(r_rod);
+    plan.planned = planned;
     let name = match (robot.file.starts_with("builtin:"), rodcal::robot::is_urdf(&robot.text)) {
         (true, _) => robot.file.clone(),
         (false, true) => "robot.urdf".to_owned(),

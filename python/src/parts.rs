@@ -121,7 +121,7 @@ pub fn calibrate_part(
 ) -> PyResult<Vec<(usize, [f64; 3])>> {
     let campaign = &campaign.get().campaign;
     let mode = mode_named(py, mode)?.unwrap_or_else(|| default_mode(campaign));
-    let options = Options { robust: robust_named(py, robust)?, prune };
+    let options = Options::default().with_robust(robust_named(py, robust)?).with_pruning(prune);
     let predicted = run(py, None, Progress::default(), |_| {
         let calibrated = calibration::calibrate(campaign, mode, &options)?;
         let compensation = Compensation::new(campaign, mode)?;

@@ -57,7 +57,7 @@ pub fn calibrate_held_out<'c>(
     }
     let suspicions = suspected(campaign, mode, others)?;
     let is_plausible = calibrated.is_plausible() && suspicions.iter().all(|suspicion| !suspicion.spoils_fit);
-    let lines: Vec<String> = suspicions.into_iter().map(|suspicion| suspicion.words).collect();
+    let lines: Vec<String> = suspicions.into_iter().map(|suspicion| suspicion.description).collect();
     let mut json = report::calibration::json(campaign, &calibrated, cross_validation);
     json["plausible"] = is_plausible.into();
     json["suspected_mistakes"] = lines.clone().into();

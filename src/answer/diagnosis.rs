@@ -78,7 +78,7 @@ pub fn diagnose_calibration(
     check_memory(campaign)?;
     let options = Options::default();
     let mended = mend(campaign, mode, others, &options)?;
-    let found = mended.diagnose(&options)?;
+    let found = mended.diagnose()?;
     let mut report = reports::calibration::report(&found);
     report.provenance = provenance(campaign);
     let mut json = reports::calibration::json(&found);

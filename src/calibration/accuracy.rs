@@ -47,8 +47,8 @@ pub fn accuracy(
     cross_validation: Option<&CrossValidation>,
 ) -> Accuracy {
     let validation =
-        calibration.validation.as_ref().map(|poses| ("validation", poses.summary, poses.is_converged));
-    let held_out = cross_validation.map(|folds| ("held_out", folds.summary, true));
+        calibration.validation.as_ref().map(|errors| ("validation", errors.summary, errors.is_converged));
+    let held_out = cross_validation.map(|errors| ("held_out", errors.summary, true));
     let seen = validation.or(held_out);
     let is_fit = calibration.is_converged && calibration.is_plausible();
     let verdict = match (limits, seen) {

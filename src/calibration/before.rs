@@ -21,7 +21,7 @@ pub(super) fn before(
     options: &Options,
 ) -> Result<Before> {
     let placed: Vec<Parameter> =
-        calibration.parameters.iter().map(|p| p.parameter).filter(Parameter::is_placement).collect();
+        calibration.parameters.iter().map(|p| p.parameter).filter(|p| p.is_placement()).collect();
     let start = calibration.start.clone();
     let nominal = calibrate_from(campaign, &campaign.measurements, start, &placed, compensation, options)?;
     let validation = match &campaign.validation {

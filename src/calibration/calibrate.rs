@@ -94,12 +94,11 @@ pub fn start(campaign: &Campaign) -> Result<Setup<'_>> {
 /// The complete and minimal set of the robot, with the user's constraints.
 pub fn free_parameters(campaign: &Campaign, start: &Setup, compensation: &Compensation) -> Vec<Parameter> {
     let has_world = matches!(campaign.measurements.targets, Targets::Points(_));
-    let is_base = |p: &Parameter| matches!(p, Parameter::BasePosition(_) | Parameter::BaseRotation(_));
-    let constraints = &campaign.wishes;
+    let constraints = &campaign.constraints;
     let minimal = minimal_parameters(&campaign.robot, start.tool, campaign.tool, compensation.payload);
     Parameter::all(campaign.robot.joints.len())
         .into_iter()
-        .filter(|p| (minimal.contains(p) && (has_world || !is_base(p))) || constraints.freed.contains(p))
+        .filter(|p| (minimal.contains(p) && (has_world || !p.is_base())) || constraints.freed.contains(p))
         .filter(|p| !constraints.fixed.contains(p))
         // what is known exactly is no unknown
         .filter(|p| campaign.robot.standard_uncertainty.of(*p) != Some(0.0))

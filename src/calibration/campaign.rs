@@ -8,12 +8,14 @@ mod checks;
 mod columns;
 mod constraints;
 mod file;
+mod group;
 mod layout;
 mod recording;
 mod regroup;
 mod warning;
 mod write;
 
+pub use group::{Group, GroupName};
 pub use warning::Warning;
 pub use write::FileNames;
 
@@ -75,7 +77,7 @@ pub struct Campaign {
     /// Limits for the verdict, where the file states them.
     pub accuracy: Option<AccuracyLimits>,
     /// What the user states about single parameters.
-    pub wishes: ParameterConstraints,
+    pub constraints: ParameterConstraints,
     /// What a user should know about the files although they can be read.
     pub warnings: Vec<Warning>,
 }
@@ -103,6 +105,7 @@ pub enum Refit {
 
 /// What the user states about single parameters: fixed, free, or known beforehand.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
 pub struct ParameterConstraints {
     /// Held at their nominal values.
     pub fixed: Vec<Parameter>,
@@ -129,7 +132,7 @@ pub struct Recording {
     pub joints_read: Option<Vec<f64>>,
     /// One per row of the file.
     pub rows: Vec<Row>,
-    /// Clamps or sockets that rows belong to; one of name "" for a tracker.
+    /// Clamps or sockets that rows belong to; one for all rows that a tracker saw.
     pub groups: Vec<Group>,
     /// Where tracker or base stood, in order of appearance; one of name "" where that is not said.
     pub stations: Vec<Station>,
@@ -155,16 +158,6 @@ pub struct Row {
     pub temperature: Option<f64>,
 }
 
-/// Where the ball was held.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct Group {
-    /// `clamp 3`, `front/0`.
-    pub name: String,
-    /// Device frame in {W}; the identity where there is no device.
-    pub device: Pose,
-}
-
 /// Where the tracker, or the robot's base, stood for some of the rows.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -186,7 +179,7 @@ impl Campaign {
     /// Parameters of which the robot's drawing says nothing: those that the user knows, and the
     /// guessed one.
     pub(crate) fn not_drawn(&self) -> Vec<Parameter> {
-        self.wishes.priors.iter().map(|&(parameter, ..)| parameter).chain(self.guessed()).collect()
+        self.constraints.priors.iter().map(|&(parameter, ..)| parameter).chain(self.guessed()).collect()
     }
 }
 
@@ -199,6 +192,7 @@ impl Station {
 
 /// What is known about the points that the tip touched.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Targets {
     /// Each measured in {W}, m: one per row.
     Points(Vec<Vector3<f64>>),
@@ -208,6 +202,7 @@ pub enum Targets {
 
 /// A known distance between the sockets of a placement.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Distance {
     /// Groups of the two sockets.
     pub between: [usize; 2],
@@ -215,6 +210,13 @@ pub struct Distance {
     pub value: f64,
     /// Its standard deviation, m.
     pub sd: f64,
+}
+
+impl Distance {
+    /// Between the sockets of two groups of a recording: distance and standard deviation, m.
+    pub fn new(between: [usize; 2], value: f64, sd: f64) -> Distance {
+        Distance { between, value, sd }
+    }
 }
 
 impl Recording {

@@ -1,11 +1,11 @@
 //! What the user of a calibration should know: which warnings apply.
 
 use super::campaign::{Campaign, Recording};
-use super::extrapolation::{Extrapolation, said};
+use super::extrapolation::{Extrapolation, ranges};
 use super::identifiability::{MOST_SCATTER, UnidentifiedDirection, plausible_range};
 use super::result::Calibration;
 use super::warning::Warning;
-use crate::robot::Parameter;
+use crate::robot::{Parameter, ParameterGroup};
 
 /// All that apply.
 pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Calibration) -> Vec<Warning> {
@@ -38,14 +38,14 @@ pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Cali
     let guessed = campaign.guessed();
     warnings.extend(calibration.parameters.iter().filter_map(|estimate| {
         let correction = estimate.value - estimate.nominal;
-        let is_link = !matches!(
-            estimate.parameter,
-            Parameter::BasePosition(_)
-                | Parameter::BaseRotation(_)
-                | Parameter::Tool(_)
-                | Parameter::Compliance(_)
-        );
-        let range = plausible_range(estimate.parameter, 0.0);
+        let is_link = match estimate.parameter.group() {
+            ParameterGroup::LinkLength | ParameterGroup::LinkTwist | ParameterGroup::JointZero => true,
+            ParameterGroup::BasePosition
+            | ParameterGroup::BaseRotation
+            | ParameterGroup::Compliance
+            | ParameterGroup::Tool => false,
+        };
+        let range = plausible_range(estimate.parameter, &[]);
         let is_link = is_link && guessed != Some(estimate.parameter);
         (is_link && estimate.identifiable && correction.abs() > range)
             .then_some(Warning::Implausible { parameter: estimate.parameter, correction })
@@ -67,7 +67,7 @@ fn far_from_drawing(calibration: &Calibration, guessed: Option<Parameter>) -> im
         let standard_uncertainty = known.of(parameter).filter(is_drawn)?;
         let correction = estimate.value - estimate.nominal;
         let is_far = correction.abs() > FAR * standard_uncertainty
-            && correction.abs() <= plausible_range(parameter, 0.0);
+            && correction.abs() <= plausible_range(parameter, &[]);
         (is_far && estimate.identifiable).then_some(Warning::FarFromDrawing {
             parameter,
             correction,
@@ -96,10 +96,10 @@ pub(super) fn extrapolation(extrapolation: &Extrapolation) -> Option<Warning> {
     let joints = extrapolation.joints_beyond();
     let most = if joints.is_empty() { MORE_UNCERTAIN } else { MORE_UNCERTAIN_BEYOND };
     let ratio = extrapolation.ratio();
-    let said = |(joint, asked, own): (usize, (f64, f64), (f64, f64))| {
-        (joint, said(asked, own, extrapolation.motions[joint]))
+    let beyond = |(joint, asked, own): (usize, (f64, f64), (f64, f64))| {
+        (joint, ranges(asked, own, extrapolation.motions[joint]))
     };
-    (ratio > most).then(|| Warning::Extrapolation { ratio, joints: joints.into_iter().map(said).collect() })
+    (ratio > most).then(|| Warning::Extrapolation { ratio, joints: joints.into_iter().map(beyond).collect() })
 }
 
 fn not_identified(calibration: &Calibration) -> Vec<Warning> {
@@ -127,7 +127,7 @@ fn not_identified(calibration: &Calibration) -> Vec<Warning> {
 fn unequal_noise(recording: &Recording, calibration: &Calibration) -> Option<Warning> {
     let noise = &calibration.noise;
     let p_value = noise.p_equal?;
-    let named = recording.groups.iter().zip(&noise.of_group).map(|(group, &sd)| (group.name.clone(), sd));
+    let named = recording.groups.iter().zip(&noise.of_group).map(|(group, &sd)| (group.name.to_string(), sd));
     let quietest = named.clone().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let noisiest = named.max_by(|a, b| a.1.total_cmp(&b.1))?;
     (noisiest.1 > quietest.1).then_some(Warning::UnequalNoise { quietest, noisiest, p_value })

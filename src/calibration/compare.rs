@@ -22,6 +22,7 @@ use crate::statistics::{Random, mean, percentile_interval, standard_deviation};
 
 /// How to compare.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct CompareOptions {
     /// How each mode is calibrated.
     pub calibration: Options,
@@ -36,6 +37,23 @@ pub struct CompareOptions {
 impl Default for CompareOptions {
     fn default() -> Self {
         CompareOptions { calibration: Options::default(), draws: 200, seed: 1, folds: 5 }
+    }
+}
+
+impl CompareOptions {
+    /// With each mode calibrated so.
+    pub fn with_calibration(self, calibration: Options) -> CompareOptions {
+        CompareOptions { calibration, ..self }
+    }
+
+    /// With so many draws of the bootstrap.
+    pub fn with_draws(self, draws: usize) -> CompareOptions {
+        CompareOptions { draws, ..self }
+    }
+
+    /// With draws from this seed.
+    pub fn with_seed(self, seed: u64) -> CompareOptions {
+        CompareOptions { seed, ..self }
     }
 }
 
@@ -96,7 +114,7 @@ impl Comparison<'_> {
 /// use rodcal::prelude::*;
 ///
 /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
-/// let options = CompareOptions { draws: 4, ..CompareOptions::default() };
+/// let options = CompareOptions::default().with_draws(4);
 /// let comparison = compare(&campaign, &options, &|_| {})?;
 /// let modes: Vec<Mode> = comparison.calibrations.iter().map(|c| c.mode).collect();
 /// assert_eq!(modes, Mode::ALL); // none, calc, fea, meas

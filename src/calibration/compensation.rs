@@ -9,16 +9,18 @@ use crate::compliance::{Compliance, DEFAULT_ELEMENTS, StaticLaws, closed_form};
 use crate::error::{Error, Result};
 use crate::rig;
 use crate::robot::{Body, Kinematics, Loads, Robot, Setup};
+use crate::rod::RodLaw;
 use crate::spatial::times;
 use crate::statistics::Random;
 use crate::units::{STANDARD_GRAVITY, significant};
 
 /// Times that torques and the joints that they turn are computed from each other; each time their
-/// error falls by the share by which a joint yields, below 10⁻³.
+/// error falls by the share by which a joint deflects, below 10⁻³.
 pub const TORQUE_ROUNDS: usize = 3;
 
 /// How the rod's deflection is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Mode {
     /// It is assumed rigid.
     None,
@@ -150,7 +152,7 @@ impl Compensation {
         let mut kinematics = Kinematics::new(setup);
         let gravity = setup.base().rotation * setup.robot.gravity / STANDARD_GRAVITY;
         let mut most = 0.0f64;
-        let mut beyond: Vec<(String, f64)> = Vec::new();
+        let mut beyond: Vec<(&RodLaw, f64)> = Vec::new();
         for row in 0..recording.len() {
             kinematics.update(recording.joints(row), &[]);
             let r = &kinematics.flange.rotation;
@@ -158,15 +160,15 @@ impl Compensation {
             let gravity = r.tr_mul(&gravity);
             most = most.max(laws.displacement(&compliance.force, &force, &gravity).norm());
             for (law, x) in laws.beyond(&force, &gravity) {
-                let (words, x) = (law.words(), x.abs());
-                match beyond.iter_mut().find(|(known, _)| *known == words) {
+                let x = x.abs();
+                match beyond.iter_mut().find(|(known, _)| *known == law) {
                     Some((_, largest)) => *largest = largest.max(x),
-                    None => beyond.push((words, x)),
+                    None => beyond.push((law, x)),
                 }
             }
         }
-        let said = |(law, x): (String, f64)| format!("{law}, at {}", significant(x, 3));
-        Some((most, beyond.into_iter().map(said).collect()))
+        let farthest = |(law, x): (&RodLaw, f64)| format!("{}, at {}", law, significant(x, 3));
+        Some((most, beyond.into_iter().map(farthest).collect()))
     }
 
     /// Fills in deflection and torque of every row for the present `setup`; gives the largest
@@ -265,7 +267,7 @@ mod tests {
     use crate::units::UM;
 
     /// A root that gives way until it comes to a stop, at the robot under weight and contact force:
-    /// with the law nothing is left, and what it does is said.
+    /// with the law nothing is left, and a warning says what it does.
     #[test]
     fn a_law_of_the_root_bends_the_rod_at_the_robot() {
         const LAW: &str = "\n[[law]]\nplace = \"root\"\nvariable = \"moment\"\nrange = [0.0, 8.0]\n\
@@ -288,11 +290,11 @@ mod tests {
                 Campaign::from_texts("campaign.toml", &find("campaign.toml"), &|name| Ok(find(name)))
                     .unwrap();
             let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
-            let said =
+            let is_warned =
                 calibration.warnings.iter().any(|warning| warning.to_string().contains("laws of the rod"));
-            (calibration.rms() / UM, said)
+            (calibration.rms() / UM, is_warned)
         };
-        let ((with, is_said), (without, _)) = (rms(&text), rms(plain));
-        assert!(with < 0.5 && without > 5.0 && is_said, "{with} {without} µm");
+        let ((with, is_warned), (without, _)) = (rms(&text), rms(plain));
+        assert!(with < 0.5 && without > 5.0 && is_warned, "{with} {without} µm");
     }
 }

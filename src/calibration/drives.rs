@@ -48,27 +48,25 @@ pub(super) fn priors(
     stated: &[Parameter],
     payload: Option<Body>,
 ) -> Vec<Prior> {
-    if !free.iter().any(|parameter| matches!(parameter, Parameter::Compliance(_))) {
+    let drives = free.iter().enumerate().filter_map(|(index, p)| Some((index, *p, p.compliant_joint()?)));
+    let mut unstated = drives.filter(|(_, parameter, _)| !stated.contains(parameter)).peekable();
+    if unstated.peek().is_none() {
         return Vec::new();
     }
     let plausible = plausible_compliances(nominal, payload);
-    let mut priors = Vec::new();
-    for (index, parameter) in free.iter().enumerate() {
-        if let Parameter::Compliance(joint) = parameter
-            && !stated.contains(parameter)
-        {
-            let (value, sd) = (nominal.get(*parameter), plausible[*joint]);
-            priors.push(Prior { parameter: index, value, sd });
-        }
-    }
-    priors
+    let prior = |(index, parameter, joint): (usize, Parameter, usize)| Prior {
+        parameter: index,
+        value: nominal.get(parameter),
+        sd: plausible[joint],
+    };
+    unstated.map(prior).collect()
 }
 
 /// No drive turns against its load; what a file says already may stay.
 pub(super) fn least(setup: &Setup, parameter: Parameter) -> f64 {
-    match matches!(parameter, Parameter::Compliance(_)) {
-        true => setup.get(parameter).min(0.0),
-        false => f64::NEG_INFINITY,
+    match parameter.compliant_joint() {
+        Some(_) => setup.get(parameter).min(0.0),
+        None => f64::NEG_INFINITY,
     }
 }
 

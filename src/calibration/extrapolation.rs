@@ -44,8 +44,8 @@ impl Extrapolation {
     /// `asked` against the `recording` of a calibration.
     pub(super) fn new(known: &Known, recording: &Recording, asked: &Recording) -> Self {
         let joints = known.setup.robot.joints.len();
-        let range = |recording: &Recording, joint: usize| {
-            let values = (0..recording.len()).map(|row| recording.joints(row)[joint]);
+        let range = |poses: &Recording, joint: usize| {
+            let values = (0..poses.len()).map(|row| poses.joints(row)[joint]);
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), q| (a.min(q), b.max(q)))
         };
         let ranges: Vec<_> = (0..joints).map(|j| [range(asked, j), range(recording, j)]).collect();
@@ -103,7 +103,7 @@ pub(super) fn sd(known: &Known, recording: &Recording) -> f64 {
 }
 
 /// `220° against 23°`.
-pub(super) fn said(asked: (f64, f64), own: (f64, f64), motion: Motion) -> String {
+pub(super) fn ranges(asked: (f64, f64), own: (f64, f64), motion: Motion) -> String {
     let (unit, si) = match motion {
         Motion::Revolute => ("°", crate::units::DEG),
         Motion::Prismatic => (" mm", crate::units::MM),

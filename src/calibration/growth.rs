@@ -13,7 +13,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::robot::{Kinematics, Parameter, Setup};
+use crate::robot::{Kinematics, Parameter, ParameterGroup, Setup};
 
 /// Of a length, to differentiate by it, m.
 const STEP: f64 = 1e-5;
@@ -29,14 +29,13 @@ pub(crate) fn growth(setup: &Setup, free: &[Parameter], joints: &[f64], count: u
         less.set(parameter, setup.get(parameter) - STEP);
         (volume(&more) - volume(&less)) / (2.0 * STEP)
     };
-    let of_parameter = |&parameter: &Parameter| match parameter {
-        Parameter::D(_) | Parameter::A(_) | Parameter::Tool(_) => slope(parameter),
-        Parameter::BasePosition(_)
-        | Parameter::BaseRotation(_)
-        | Parameter::Theta(_)
-        | Parameter::Alpha(_)
-        | Parameter::Beta(_)
-        | Parameter::Compliance(_) => 0.0,
+    let of_parameter = |&parameter: &Parameter| match parameter.group() {
+        ParameterGroup::LinkLength | ParameterGroup::Tool => slope(parameter),
+        ParameterGroup::BasePosition
+        | ParameterGroup::BaseRotation
+        | ParameterGroup::LinkTwist
+        | ParameterGroup::JointZero
+        | ParameterGroup::Compliance => 0.0,
     };
     free.iter().map(of_parameter).collect()
 }

@@ -16,7 +16,7 @@ use crate::robot::{Parameter, Setup};
 /// millimetres per metre, and that is no scatter.
 pub const MOST_SCATTER: f64 = 5e-3;
 
-/// Share of its plausible range that a parameter may owe to held directions and still count as
+/// Share of its plausible range that a parameter may have from held directions and still count as
 /// identified.
 const SHARE: f64 = 0.1;
 /// How firmly a direction is held: standard deviation relative to the plausible range.
@@ -50,10 +50,10 @@ impl UnidentifiedDirection {
     }
 }
 
-/// How far a parameter of a robot as built may be from its nominal value, SI. `largest_torque` on
-/// the parameter's joint, N·m, makes compliances comparable: no drive deflects by more than 10
-/// mrad.
-pub fn plausible_range(parameter: Parameter, largest_torque: f64) -> f64 {
+/// How far a parameter of a robot as built may be from its nominal value, SI. The largest torque on
+/// each joint, N·m, makes compliances comparable: no drive deflects by more than 10 mrad. Without
+/// it a compliance may be anything.
+pub fn plausible_range(parameter: Parameter, largest_torques: &[f64]) -> f64 {
     match parameter {
         // base and tool may be anywhere, but a rough start has been there: what it has not seen, no
         // fit will
@@ -61,7 +61,11 @@ pub fn plausible_range(parameter: Parameter, largest_torque: f64) -> f64 {
         Parameter::D(_) | Parameter::A(_) | Parameter::Tool(_) => 0.02,
         Parameter::Theta(_) => 0.1,
         Parameter::Alpha(_) | Parameter::Beta(_) => 0.04,
-        Parameter::Compliance(_) => 0.01 / largest_torque.max(f64::MIN_POSITIVE),
+        Parameter::Compliance(joint) => {
+            0.01 / largest_torques
+                .get(joint)
+                .map_or(f64::MIN_POSITIVE, |torque| torque.max(f64::MIN_POSITIVE))
+        }
     }
 }
 

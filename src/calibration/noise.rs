@@ -16,6 +16,7 @@ const FEWEST: f64 = 10.0;
 
 /// What an outlier counts. The distance of a pose from the model is judged, not single coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Robust {
     /// As much as any other pose.
     #[default]

@@ -181,7 +181,7 @@ impl<'a, 'c> Run<'a, 'c> {
     /// What the drawing, the class of the drives and the user know of the free parameters.
     pub fn priors(&self) -> Vec<Prior> {
         let mut priors: Vec<Prior> = self.drawing.priors().chain(self.drives.iter().copied()).collect();
-        for &(parameter, value, sd) in &self.campaign.wishes.priors {
+        for &(parameter, value, sd) in &self.campaign.constraints.priors {
             if let Some(index) = self.free.iter().position(|&p| p == parameter) {
                 priors.push(Prior { parameter: index, value, sd });
             }
@@ -215,7 +215,7 @@ impl<'a, 'c> Run<'a, 'c> {
             corner /= (squares / problem.residual_count() as f64).sqrt().max(1.0);
         }
         // what the user knows beforehand identifies too
-        for &(parameter, _, sd) in &self.campaign.wishes.priors {
+        for &(parameter, _, sd) in &self.campaign.constraints.priors {
             if let Some(k) = self.free.iter().position(|&p| p == parameter) {
                 let last = corner.nrows();
                 corner = corner.insert_row(last, 0.0);
@@ -223,16 +223,8 @@ impl<'a, 'c> Run<'a, 'c> {
             }
         }
         let torque = self.largest_torques();
-        let ranges: Vec<f64> = self
-            .free
-            .iter()
-            .map(|&p| {
-                identifiability::plausible_range(
-                    p,
-                    if let Parameter::Compliance(j) = p { torque[j] } else { 0.0 },
-                )
-            })
-            .collect();
+        let ranges: Vec<f64> =
+            self.free.iter().map(|&p| identifiability::plausible_range(p, &torque)).collect();
         self.held = identifiability::unidentified(&corner, &ranges, &self.start, self.free)?;
         Ok(())
     }

@@ -43,14 +43,11 @@ pub fn known_before(
     drawing.scale = scale;
     let body = payload.unwrap_or(Body { mass: 0.0, centre: setup.tool });
     let torque = largest_torques(setup.robot, setup, body);
-    let range = |parameter: &Parameter| {
-        plausible_range(*parameter, if let Parameter::Compliance(j) = parameter { torque[*j] } else { 0.0 })
-    };
-    let mut known: Vec<f64> = free.iter().map(range).collect();
+    let mut known: Vec<f64> = free.iter().map(|&p| plausible_range(p, &torque)).collect();
     for prior in drawing.priors().chain(drives::priors(setup, free, &stated, payload)) {
         known[prior.parameter] = prior.sd;
     }
-    for &(parameter, _, sd) in &campaign.wishes.priors {
+    for &(parameter, _, sd) in &campaign.constraints.priors {
         if let Some(index) = free.iter().position(|&p| p == parameter) {
             known[index] = sd;
         }
@@ -161,7 +158,7 @@ impl<'c> Planned<'c> {
     pub fn placement(&self) -> Vec<Matrix3xX<f64>> {
         let joints = self.recording.joint_count;
         let placed: Vec<Parameter> =
-            Parameter::all(joints).into_iter().filter(Parameter::is_placement).collect();
+            Parameter::all(joints).into_iter().filter(|p| p.is_placement()).collect();
         let mut kinematics = Kinematics::new(&self.setup);
         let of_row = |row: usize| {
             let torque = self.pass.torque(&self.recording, row);
@@ -185,7 +182,7 @@ pub fn places(campaign: &Campaign, setup: &Setup) -> (Vec<Group>, bool) {
         return (campaign.clamps.clone(), false);
     }
     if matches!(recording.targets, Targets::Points(_)) {
-        return (vec![Group { name: String::new(), device: crate::spatial::Pose::IDENTITY }], false);
+        return (vec![Group::tracked()], false);
     }
     let mut kinematics = Kinematics::new(setup);
     let mut sums = vec![(Vector3::zeros(), 0.0); recording.groups.len()];

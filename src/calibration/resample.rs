@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::campaign::{Distance, Recording, Row, Targets};
+use super::campaign::{Distance, Group, GroupName, Recording, Row, Targets};
 use crate::statistics::Random;
 
 /// Fewest consecutive rows that are worth a block.
@@ -58,8 +58,8 @@ impl Recording {
     /// The name of a row's pose for people, with its clamp or socket.
     pub fn pose_name(&self, row: usize) -> String {
         let entry = &self.rows[row];
-        match self.groups[entry.group].name.as_str() {
-            "" => entry.pose.clone(),
+        match &self.groups[entry.group].name {
+            GroupName::Tracked => entry.pose.clone(),
             group => format!("{} of {group}", entry.pose),
         }
     }
@@ -83,7 +83,7 @@ impl Recording {
     /// # Ok::<(), rodcal::Error>(())
     /// ```
     pub fn folds(&self, folds: usize) -> Vec<usize> {
-        let placements = self.placements();
+        let placements = self.session_by_group();
         let count = placements.iter().max().map_or(0, |last| last + 1);
         if matches!(self.targets, Targets::Sockets(_)) && count > 1 {
             return self.rows.iter().map(|row| placements[row.group]).collect();
@@ -142,20 +142,22 @@ impl Recording {
         points.iter().zip(&self.rows).map(less).collect()
     }
 
-    /// The placement of every group, counted in order of appearance: what stands before the `/` of
-    /// its name.
-    fn placements(&self) -> Vec<usize> {
-        let mut names: Vec<&str> = Vec::new();
-        self.groups
-            .iter()
-            .map(|group| {
-                let name =
-                    group.name.rsplit_once('/').map_or(group.name.as_str(), |(placement, _)| placement);
-                names.iter().position(|&known| known == name).unwrap_or_else(|| {
-                    names.push(name);
-                    names.len() - 1
-                })
-            })
-            .collect()
+    /// What was set up in one piece, by its first group, in order of appearance: each clamp, each
+    /// placement of sockets.
+    pub(crate) fn sessions(&self) -> Vec<&GroupName> {
+        let mut sessions: Vec<&GroupName> = Vec::new();
+        for Group { name, .. } in &self.groups {
+            if sessions.iter().all(|known| !known.is_set_up_with(name)) {
+                sessions.push(name);
+            }
+        }
+        sessions
+    }
+
+    /// Of every group the number of its session among [`Recording::sessions`].
+    pub(crate) fn session_by_group(&self) -> Vec<usize> {
+        let sessions = self.sessions();
+        let is_own = |group: &Group| sessions.iter().position(|known| known.is_set_up_with(&group.name));
+        self.groups.iter().map(|group| is_own(group).unwrap_or_default()).collect()
     }
 }

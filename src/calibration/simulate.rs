@@ -19,7 +19,7 @@ use plan::CLAMPS;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::campaign::{Group, Recording, Row, Station, Targets};
+use super::campaign::{Group, GroupName, Recording, Row, Station, Targets};
 use super::compensation::{Compensation, Mode};
 use super::problem::Pass;
 use crate::compliance::{Compliance, PAPER_CONTACT_FORCE, StaticLaws};
@@ -62,7 +62,7 @@ pub struct Simulation<'r> {
 /// let robot = Robot::from_text(file, text, None, None)?;
 /// let rod = Rod::read("rods/5.toml".as_ref())?;
 /// let model = Compliance::of_model(&rod, &Physics::default(), 20)?;
-/// let plan = Plan { poses_per_clamp: 8, validation_poses: 5, ..Plan::default() };
+/// let plan = Plan::of_poses(8, 5);
 /// let simulation = simulate(&robot, &rod, &model, &plan)?;
 /// assert_eq!((simulation.measurements.len(), simulation.validation.len()), (40, 5));
 /// // the ball rests within 0.2 mm of the clamps: what is seen is errors of the robot's calibration
@@ -96,7 +96,7 @@ pub fn simulate_telling<'r>(
     let truth = true_setup(robot, base_guess, rod.tip(), payload, plan);
     let groups: Vec<Group> = (1..)
         .zip(CLAMPS)
-        .map(|(id, (place, turn))| Group { name: format!("clamp {id}"), device: device_frame(place, turn) })
+        .map(|(id, (place, turn))| Group::new(GroupName::Clamp(id.to_string()), device_frame(place, turn)))
         .collect();
     let compensation = Compensation {
         mode: Mode::Fea,
@@ -237,7 +237,7 @@ fn scan(truth: &Setup, plan: &Plan) -> Recording {
         joint_values: Vec::new(),
         joints_read: None,
         rows: Vec::new(),
-        groups: vec![Group { name: String::new(), device: Pose::IDENTITY }],
+        groups: vec![Group::tracked()],
         stations: vec![Station::first("")],
         targets: Targets::Points(Vec::new()),
     };

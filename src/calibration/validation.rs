@@ -138,7 +138,7 @@ pub(super) fn validate_from(
         setup.base_position = base.origin;
         setup.base_turn = Vector3::zeros();
         setup.tool = tool;
-        let free: Vec<Parameter> = Parameter::all(n).into_iter().filter(Parameter::is_placement).collect();
+        let free: Vec<Parameter> = Parameter::all(n).into_iter().filter(|p| p.is_placement()).collect();
         // torques depend a little on where the base stands
         for _ in 0..3 {
             bare.update(&setup, recording, &mut pass);

@@ -141,10 +141,9 @@ fn calibrated_range(calibration: &Calibration, recording: &Recording) -> Calibra
 /// Covariance of what the data determine of the robot and its tool; `None` where the noise is
 /// unknown.
 fn uncertainty(calibration: &Calibration) -> Option<Uncertainty> {
-    let is_own = |p: Parameter| !matches!(p, Parameter::BasePosition(_) | Parameter::BaseRotation(_));
     let all = &calibration.fit.covariance.matrix;
     let kept: Vec<usize> = (0..calibration.parameters.len())
-        .filter(|&k| is_own(calibration.parameters[k].parameter) && all[(k, k)].is_finite())
+        .filter(|&k| !calibration.parameters[k].parameter.is_base() && all[(k, k)].is_finite())
         .collect();
     let covariance = all.select_rows(&kept).select_columns(&kept);
     let parameters = kept.iter().map(|&k| calibration.parameters[k].parameter).collect();

@@ -76,7 +76,7 @@ impl Calibrate {
     pub fn run(&self) -> Result<Outcome> {
         let campaign = Campaign::read(&self.campaign)?;
         let mode = self.mode.map_or_else(|| calibration::default_mode(&campaign), ModeName::mode);
-        let options = Options { robust: self.robust.robust(), prune: self.prune };
+        let options = Options::default().with_robust(self.robust.robust()).with_pruning(self.prune);
         let folds = self.folds.map(usize::from);
         let others = answer::neighbours(&campaign);
         let (answer, _) = answer::calibrate(&campaign, mode, &options, folds, &others)?;

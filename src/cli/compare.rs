@@ -63,12 +63,9 @@ impl Compare {
             });
         }
         let campaign = Campaign::read(&self.campaign)?;
-        let options = CompareOptions {
-            calibration: Options { robust: self.robust.robust(), ..Options::default() },
-            draws: self.draws,
-            seed: self.seed,
-            ..CompareOptions::default()
-        };
+        let calibration = Options::default().with_robust(self.robust.robust());
+        let options = CompareOptions::default().with_calibration(calibration);
+        let options = options.with_draws(self.draws).with_seed(self.seed);
         let progress = Progress::new("comparing modes", self.draws);
         let answer = answer::compare(&campaign, &options, &|_| progress.one_more())?;
         progress.finish();

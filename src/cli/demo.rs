@@ -191,7 +191,7 @@ fn robot() -> Result<(Report, Value, Value)> {
         })
     };
     let campaign = Campaign::from_texts(CAMPAIGN_FILE, CAMPAIGN, &open)?;
-    let options = CompareOptions { draws: DRAWS, ..CompareOptions::default() };
+    let options = CompareOptions::default().with_draws(DRAWS);
     let calibrated =
         calibration::calibrate(&campaign, calibration::default_mode(&campaign), &options.calibration)?;
     let compared = calibration::compare(&campaign, &options, &|_| {})?;

@@ -65,14 +65,9 @@ impl Simulate {
             Some(path) => planned_poses(&robot, &path.display().to_string(), &files::read_text(path)?)?,
             None => Vec::new(),
         };
-        let plan = Plan {
-            seed: self.seed,
-            planned,
-            poses_per_clamp: self.poses.into(),
-            validation_poses: self.validation.into(),
-            rod_factor: self.r_rod,
-            ..Plan::default()
-        };
+        let poses = Plan::of_poses(self.poses.into(), self.validation.into());
+        let mut plan = poses.with_seed(self.seed).with_rod_factor(self.r_rod);
+        plan.planned = planned;
         let campaign = self.directory.join("campaign.toml").display().to_string();
         let progress = Progress::open("simulating poses");
         let tell = || progress.one_more();

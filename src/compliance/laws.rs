@@ -15,7 +15,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::Compliance;
 use crate::rod::constants::covariance;
-use crate::rod::{LawVariable, Rod, RodLaw};
+use crate::rod::{LawVariable, Rod, RodLaw, RodLawPlace};
 use crate::units::{STANDARD_GRAVITY, UM};
 
 const PERCENT: f64 = 0.01;
@@ -48,13 +48,14 @@ impl StaticLaws {
     /// All but those of sensors, between two stations, m.
     pub fn between(rod: &Rod, load: f64, read: f64) -> StaticLaws {
         let acting = |law: &RodLaw| {
-            if !law.is_static() || law.variable == LawVariable::Reading {
+            if !law.is_static() {
                 return None;
             }
-            let station = match law.place.as_str() {
-                "rod" | "clamp" | "slide" => None,
-                "root" => Some(0.0),
-                joint => Some(rod.joints.iter().find(|own| own.name == joint)?.station),
+            let station = match &law.place {
+                RodLawPlace::Rod | RodLawPlace::Clamp | RodLawPlace::Slide => None,
+                RodLawPlace::Root => Some(0.0),
+                RodLawPlace::Joint(name) => Some(rod.joints.iter().find(|own| own.name == *name)?.station),
+                RodLawPlace::Sensor(_) => return None,
             };
             // what is beyond a joint alone is turned by it, and turns it
             if station.is_some_and(|station| station > load.min(read)) {
@@ -199,11 +200,11 @@ impl Acting {
             return Vector3::zeros();
         }
         let along = |vector: Vector3<f64>| vector.try_normalize(0.0).unwrap_or_default();
-        match (self.levers, self.law.unit()) {
+        match (self.levers, &self.law.place) {
             (Some([_, read]), _) => (along(self.moment(force, gravity)) * (value * URAD)).cross(&read),
-            (None, "N") => compliance * along(*force) * value,
-            (None, "%") => compliance * force * (value * PERCENT),
-            (None, _) => along(*force) * (value * UM),
+            (None, RodLawPlace::Clamp) => along(*force) * (value * UM),
+            (None, _) if self.law.variable == LawVariable::Load => compliance * along(*force) * value,
+            (None, _) => compliance * force * (value * PERCENT),
         }
     }
 }
@@ -241,7 +242,7 @@ mod tests {
         Rod::from_toml("rod", include_str!("../../rods/5.toml")).unwrap().with_mass("ring", 0.3, 0.2)
     }
 
-    fn proportional(place: &str, variable: LawVariable, slope: f64) -> RodLaw {
+    fn proportional(place: RodLawPlace, variable: LawVariable, slope: f64) -> RodLaw {
         let constant = LawConstant {
             name: "c".into(),
             value: slope,
@@ -267,7 +268,7 @@ mod tests {
                 |rod: &Rod| Compliance::of_model(rod, &Physics::default(), DEFAULT_ELEMENTS).unwrap();
             let (plain, soft) = (rod().with_joint(joint(0.0)), rod().with_joint(joint(20e-6)));
             let mut with_law = plain.clone();
-            with_law.laws.push(proportional(place, LawVariable::Moment, 20.0));
+            with_law.laws.push(proportional(RodLawPlace::named(place), LawVariable::Moment, 20.0));
             let laws = StaticLaws::of_tip(&with_law);
             let (force, gravity) = (Vector3::new(1.0, -2.0, 3.0), Vector3::new(0.3, 0.5, -0.8));
             let (before, after) = (of_rod(&plain), of_rod(&soft));
@@ -281,8 +282,8 @@ mod tests {
     fn a_share_of_the_load_is_a_share_of_the_deflection() {
         let compliance = Compliance::of_model(&rod(), &Physics::default(), DEFAULT_ELEMENTS).unwrap().force;
         let mut with_law = rod();
-        with_law.laws.push(proportional("rod", LawVariable::Load, 0.1));
-        with_law.laws.push(proportional("clamp", LawVariable::Load, 5.0));
+        with_law.laws.push(proportional(RodLawPlace::Rod, LawVariable::Load, 0.1));
+        with_law.laws.push(proportional(RodLawPlace::Clamp, LawVariable::Load, 5.0));
         let force = Vector3::new(1.0, -2.0, 2.0);
         let laws = StaticLaws::of_tip(&with_law);
         let found = laws.displacement(&compliance, &force, &Vector3::zeros());

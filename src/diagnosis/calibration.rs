@@ -7,52 +7,44 @@
 //! are made once (`linear_terms.rs`). Which effects there are, with all that is said of each:
 //! `effects/`. The rivals that stand for physics nobody has named: `nonparametric.rs`.
 //!
+//! A diagnosis takes two steps: [`mend`] undoes what was written or wired wrongly, and
+//! [`Mended::diagnose`] calibrates what was meant and asks its residuals for physics.
+//!
+//! ```
+//! use rodcal::prelude::*;
+//!
+//! // simulated with nothing but noise
+//! let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+//! let mended = mend(&campaign, Mode::Meas, &Neighbours::default(), &Options::default())?;
+//! let found = mended.diagnose()?;
+//! assert!(mended.found.is_empty() && !found.diagnosis.is_mismatch());
+//! # Ok::<(), rodcal::Error>(())
+//! ```
+//!
 //! What a calibration absorbs cannot be seen: an eccentricity of the last joint is nothing where
 //! the target lies on that joint's axis. Such effects are no candidates, but
 //! [`absorbed`](crate::diagnosis::Diagnosed::absorbed) says which they are.
 
-mod apply;
-mod beside;
-mod configuration;
-mod context;
-mod correction_table;
-mod cosines;
 mod diagnose;
 pub mod effects;
-mod entry;
 mod evidence;
-mod feasible_poses;
-mod forward_model;
-mod gear;
-mod law;
-mod law_measures;
-mod limits;
-mod linear_terms;
-mod memory;
+mod laws;
 mod mistakes;
 mod model;
 mod next;
-mod nominal;
 mod nonparametric;
-mod patterns;
-mod prepared;
-mod sites;
-mod tails;
 #[cfg(test)]
 mod tests;
-mod textbook;
-mod torque_uncertainty;
 mod transfer;
-mod unfollowed;
-mod vector;
-mod written_law;
+mod write_back;
 
-pub use apply::{Applied, apply, destination, law_destination};
-pub use diagnose::{CalibrationDiagnosis, Happened, diagnose, diagnose_calibrated};
+pub use self::diagnose::memory::{MEMORY_LIMIT, check_memory, memory_needed};
+pub use self::laws::textbook::remark;
+pub use self::model::CalibrationModel;
+pub use self::model::gear::{Curve, Gear};
+pub use self::model::law::{Course, Frame, Law, Power, RodLoad, TakenUp};
+pub use self::write_back::apply::{Applied, apply};
+pub use self::write_back::destination::law_destination;
+pub use diagnose::{CalibrationDiagnosis, Happened, diagnose_as_recorded, diagnose_calibrated};
 pub use effects::CalibrationEffect;
-pub use gear::{Curve, Gear};
-pub use law::{Course, Frame, Law, Power, RodLoad, TakenUp};
-pub use memory::{MEMORY_LIMIT, check_memory, memory_needed};
 pub use mistakes::{Mended, Neighbours, Suspicion, mend, suspected};
-pub use model::CalibrationModel;
-pub use textbook::remark;

@@ -2,11 +2,21 @@
 //!
 //! Three stages act one after another, so that effects combine as they would on the bench (friction
 //! on a rod whose modulus is off too): a nominal load becomes a force, a force becomes a
-//! displacement, a displacement becomes a reading. Formulae: `action.rs` (stages), `slide.rs`
-//! (friction and play along a course), `structure.rs` (compliance), `load_history.rs` (creep,
-//! hysteresis). What was recorded when, in which session and run, and which way the load went:
-//! `chronicle.rs`. Which effects there are and how large they usually are: `effects/`. The rivals
-//! that stand for physics nobody has named: `nonparametric.rs`.
+//! displacement, a displacement becomes a reading.
+//!
+//! | room | what stands there |
+//! |---|---|
+//! | `diagnose` | from readings to findings: the order of the steps |
+//! | `recording` | data, their order, what repeats |
+//! | `mistakes` | what is undone before there is a model |
+//! | `effects` | which effects there are, how large they usually are, how each is said and written |
+//! | `own_effect` | effects that a lab describes itself |
+//! | `nonparametric` | the rivals that stand for physics nobody has named |
+//! | `mechanics` | the formulas: load, structure, slide, history of the loads, display |
+//! | `model` | readings and mechanics as the engine's forward model |
+//! | `laws` | formulas of the rod's file, and those that are proposed |
+//! | `measurements` | what could be measured next, or first |
+//! | `write_back` | findings in the rod's file, or taken out of the readings |
 //!
 //! Without a rod (`linear`) each line of readings has a slope c that nobody knows. The evidence
 //! leaves it to the engine as a nuisance, and an effect that scales with the displacement takes the
@@ -23,52 +33,26 @@
 //! loads are what is compared: the same chain, solved for the load, of which each newton counts as
 //! c₀ = max|u|/max|F| metres, so that loads and the readings of other sensors stand in one unit.
 
-mod action;
-mod another_rod;
-mod as_measured;
-mod build;
-mod cases;
-mod chronicle;
-mod correction;
-mod datum;
 mod diagnose;
-mod display;
 pub mod effects;
-mod evidence;
-mod feasible;
-mod file_laws;
-mod first_sight;
-mod forward_model;
-mod limits;
-mod load_history;
+mod laws;
+mod measurements;
+mod mechanics;
 mod mistakes;
 mod model;
-mod next;
-mod nominal;
 mod nonparametric;
 mod numbering;
-mod own;
 mod own_effect;
-mod own_law;
-pub mod planned;
-mod recovery;
-mod remembered;
-mod response;
-mod sites;
-mod slide;
-mod state;
-mod structure;
+mod recording;
 #[cfg(test)]
 mod tests;
-mod textbook;
-mod transfer;
-mod wanted;
-mod written_law;
+mod write_back;
 
-pub use correction::Correction;
-pub use datum::Datum;
 pub use diagnose::{diagnose, diagnose_among, diagnose_with};
+pub use laws::textbook::remark;
+pub use measurements::planned;
 pub use mistakes::suspected;
 pub use model::{RigDiagnosis, RigModel};
 pub use own_effect::OwnEffect;
-pub use textbook::remark;
+pub use recording::datum::Datum;
+pub use write_back::{Correction, WrittenItem};

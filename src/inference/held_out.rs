@@ -27,6 +27,7 @@ const DRAWS: usize = 1000;
 
 /// Errors of data that the model had not seen.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct HeldOut {
     /// Root mean square of what the base model leaves of held-out data.
     pub before: f64,

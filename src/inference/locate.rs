@@ -17,6 +17,7 @@ const PER_VALUE: usize = 3;
 
 /// How structured residuals are along a covariate.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Structure {
     /// 0 for none, 1 for nothing but structure.
     pub strength: f64,

@@ -42,7 +42,7 @@ impl Columns {
         };
         let parameter = Parameter {
             name: "size".into(),
-            unit: 1.0,
+            unit: crate::units::Unit::NONE,
             neutral: 0.0,
             size: 10.0,
             bounds: (f64::NEG_INFINITY, f64::INFINITY),

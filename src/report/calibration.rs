@@ -106,7 +106,7 @@ pub fn json(
         "observability": observability_json(calibration),
         "outliers": calibration.outliers.iter().map(|&row| json!({
             "pose": recording.rows[row].pose,
-            "group": recording.groups[recording.rows[row].group].name,
+            "group": recording.groups[recording.rows[row].group].name.to_string(),
             "line": recording.rows[row].line,
             "residual_um": calibration.deviations[row].norm() / UM,
         })).collect::<Vec<_>>(),
@@ -114,7 +114,7 @@ pub fn json(
             "deflection_change_um": pass.change / UM, "rms_um": pass.rms / UM, "noise_um": pass.noise / UM,
         })).collect::<Vec<_>>(),
         "sockets": recording.groups.iter().zip(&calibration.sockets).map(|(group, socket)| json!({
-            "name": group.name,
+            "name": group.name.to_string(),
             "xyz_mm": socket.map(|(value, _)| value / MM),
             "std_error_mm": socket.map(|(_, error)| error.map(|e| e / MM)),
         })).collect::<Vec<_>>(),

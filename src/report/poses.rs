@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::table::{Column, Table};
 use super::{Block, Card, Report, Section, Tone, forecast};
+use crate::calibration::campaign::GroupName;
 use crate::delimited::cell;
 use crate::design::{Known, Obstacle, PoseCriterion, PoseStudy, Source};
 use crate::robot::Motion;
@@ -70,10 +71,10 @@ fn refused(study: &PoseStudy, obstacle: Obstacle) -> usize {
 
 /// Columns of a recording that name a pose and its place, then its joints.
 fn columns(study: &PoseStudy) -> Vec<String> {
-    let of_place: &[&str] = match study.places.first().map(|place| place.name.as_str()) {
-        None | Some("") => &["pose"],
-        Some(name) if name.starts_with("clamp ") => &["pose", "clamp"],
-        Some(_) => &["pose", "placement", "socket"],
+    let of_place: &[&str] = match study.places.first().map(|place| &place.name) {
+        None | Some(GroupName::Tracked) => &["pose"],
+        Some(GroupName::Clamp(_)) => &["pose", "clamp"],
+        Some(GroupName::Socket { .. }) => &["pose", "placement", "socket"],
     };
     let joints = study.setup.robot.joints.iter().zip(1..).map(|(joint, number)| joint.column(number).0);
     of_place.iter().map(|name| (*name).to_owned()).chain(joints).collect()
@@ -83,11 +84,10 @@ fn columns(study: &PoseStudy) -> Vec<String> {
 fn rows<'s>(study: &'s PoseStudy) -> impl Iterator<Item = (Vec<String>, Vec<f64>)> + 's {
     study.chosen.iter().zip(1..).map(|((place, q), number): (_, usize)| {
         let mut names = vec![number.to_string()];
-        let name = &study.places[*place].name;
-        match (name.strip_prefix("clamp "), name.split_once('/')) {
-            (Some(id), _) => names.push(id.to_owned()),
-            (None, Some((placement, socket))) => names.extend([placement.to_owned(), socket.to_owned()]),
-            _ => {}
+        match &study.places[*place].name {
+            GroupName::Tracked => {}
+            GroupName::Clamp(id) => names.push(id.clone()),
+            GroupName::Socket { placement, socket } => names.extend([placement.clone(), socket.clone()]),
         }
         let values = q.iter().zip(&study.setup.robot.joints).map(|(q, joint)| {
             let unit = if joint.motion == Motion::Revolute { DEG } else { MM };
@@ -228,7 +228,7 @@ fn places(study: &PoseStudy) -> Table {
     let mut table = Table::new("places", &caption, heads);
     for (place, group) in study.places.iter().enumerate() {
         let of_poses = |poses: &[(usize, Vec<f64>)]| poses.iter().filter(|(own, _)| *own == place).count();
-        let name = if group.name.is_empty() { "anywhere" } else { &group.name };
+        let name = if group.name.is_tracked() { "anywhere".to_owned() } else { group.name.to_string() };
         let mut cells = vec![
             name.to_owned(),
             of_poses(&study.chosen).to_string(),

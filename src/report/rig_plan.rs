@@ -20,7 +20,7 @@ use crate::units::{MM, UM, significant};
 pub fn json(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Value {
     let measurement = |one: &PlannedLoads| {
         let mut object = load_plan(&one.loads);
-        object["words"] = one.words.clone().into();
+        object["words"] = one.description.clone().into();
         object["minutes"] = one.minutes.into();
         object
     };
@@ -197,7 +197,7 @@ fn measurements(plan: &RigPlan, rod: &Rod) -> Vec<Block> {
     for (k, one) in plan.measurements.iter().enumerate() {
         table.row(vec![
             (k + 1).to_string(),
-            one.words.clone(),
+            one.description.clone(),
             one.loads.repeats.to_string(),
             format!("{:.0}", one.minutes),
         ]);

@@ -11,7 +11,7 @@ use crate::beam::Physics;
 use crate::compliance::DEFAULT_ELEMENTS;
 use crate::error::{Error, Place, Result};
 use crate::least_squares::Robust;
-use crate::rod::Rod;
+use crate::rod::{Rod, RodLaw};
 
 /// How to fit.
 #[derive(Debug, Clone, Copy)]
@@ -72,7 +72,7 @@ pub fn fit(readings: &Readings, rod: Option<&Rod>, options: &Options) -> Result<
         check_stations(readings, rod)?;
         let linear = without_laws(readings, rod, &options.physics, options.elements)?;
         let mut fit = fit(&linear, Some(&Rod { laws: Vec::new(), ..rod.clone() }), options)?;
-        let laws = rod.laws.iter().filter(|law| law.is_static()).map(|law| law.words());
+        let laws = rod.laws.iter().filter(|law| law.is_static()).map(RodLaw::to_string);
         fit.warnings.splice(0..0, laws.map(|law| Warning::WithoutLaw { law }));
         return Ok(fit);
     }

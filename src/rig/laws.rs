@@ -7,7 +7,7 @@ use crate::beam::{Physics, RodModel};
 use crate::compliance::StaticLaws;
 use crate::error::Result;
 use crate::rod::law::should_show;
-use crate::rod::{LawVariable, Rod, RodLaw};
+use crate::rod::{Rod, RodLaw, RodLawPlace};
 use crate::units::UM;
 
 /// The readings less all laws that the load alone decides on.
@@ -21,7 +21,7 @@ pub fn without_laws(readings: &Readings, rod: &Rod, physics: &Physics, elements:
     let mut known: Vec<((f64, f64), Matrix3<f64>, StaticLaws)> = Vec::new();
     for row in &mut without.rows {
         for channel in Axis::ALL {
-            let laws = rod.laws.iter().filter(|law| is_of(law, channel));
+            let laws = rod.laws.iter().filter(|law| is_read_by(law, channel));
             if let Some(offset) = &mut row.offset[channel.index()] {
                 laws.for_each(|law| *offset = UM * should_show(*offset / UM, |y| law.at(y, 1.0)));
             }
@@ -46,6 +46,6 @@ pub fn without_laws(readings: &Readings, rod: &Rod, physics: &Physics, elements:
     Ok(without)
 }
 
-fn is_of(law: &RodLaw, channel: Axis) -> bool {
-    law.variable == LawVariable::Reading && law.is_static() && law.place == format!("d{channel}")
+fn is_read_by(law: &RodLaw, channel: Axis) -> bool {
+    law.place == RodLawPlace::Sensor(channel) && law.is_static()
 }

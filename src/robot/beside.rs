@@ -112,7 +112,7 @@ mod tests {
         let range = again.calibrated.unwrap();
         assert!((range.joints[1].1 - 1.0).abs() < 1e-12 && (range.sd - 1e-5).abs() < 1e-15);
         let message = |text: &str| bare.clone().add_beside("e.toml", text).unwrap_err().to_string();
-        for (text, words) in [
+        for (text, expected) in [
             (
                 "[[effect]]\nname = \"backlash\"\njoint = 1\nplay_urad = 9\ntaken_up = \"wind\"\n",
                 "\"approach\"",
@@ -124,7 +124,7 @@ mod tests {
             ("[calibrated]\nlow_deg_or_mm = [1]\nhigh_deg_or_mm = [1, 2]\nsd_mm = 1\n", "2 numbers"),
         ] {
             let message = message(text);
-            assert!(message.contains(words) && message.contains("e.toml:"), "{message}");
+            assert!(message.contains(expected) && message.contains("e.toml:"), "{message}");
         }
     }
 

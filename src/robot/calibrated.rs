@@ -10,6 +10,7 @@ use crate::units::MM;
 
 /// The poses that a robot was calibrated with, as far as a prediction asks for them.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CalibratedRange {
     /// Least and greatest value of each joint, rad or m.
     pub joints: Vec<(f64, f64)>,

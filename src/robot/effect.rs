@@ -7,8 +7,8 @@
 //! backlash             ½·b·sign(τ)
 //! wrist_coupling       k·q of another joint
 //! joint_compliance     c·τ
-//! weight               c·(horizontal lever of a frame about the joint): the joint yields to a weight there
-//!                      that nobody knows
+//! weight               c·(horizontal lever of a frame about the joint): the joint deflects under a
+//!                      weight there that nobody knows
 //! ```
 
 /// An error of a joint; what follows the move before is in `moves.rs`. Joints count from 0.
@@ -61,14 +61,14 @@ pub enum Effect {
         /// Share of the last move that was still to come.
         fraction: f64,
     },
-    /// A joint that yields to its torque, in files that have no place for that at the joint.
+    /// A joint that deflects under its torque, in files that have no place for that at the joint.
     Compliance {
         /// The joint.
         joint: usize,
         /// c, rad/(N·m).
         per_nm: f64,
     },
-    /// A joint that yields to an unknown weight at a frame beyond it.
+    /// A joint that deflects under an unknown weight at a frame beyond it.
     Weight {
         /// The joint.
         joint: usize,
@@ -106,7 +106,29 @@ impl Effect {
 
     /// True of a function of its joint's own angle, which a table of corrections can hold.
     pub fn is_of_own_angle(&self) -> bool {
-        matches!(self, Effect::Harmonic { .. } | Effect::Table { .. } | Effect::EncoderScale { .. })
+        match self {
+            Effect::Harmonic { .. } | Effect::Table { .. } | Effect::EncoderScale { .. } => true,
+            Effect::Backlash { .. }
+            | Effect::PlayByApproach { .. }
+            | Effect::Lag { .. }
+            | Effect::Compliance { .. }
+            | Effect::Weight { .. }
+            | Effect::Coupling { .. } => false,
+        }
+    }
+
+    /// True where the move that led to a pose matters.
+    pub fn follows_moves(&self) -> bool {
+        match self {
+            Effect::PlayByApproach { .. } | Effect::Lag { .. } => true,
+            Effect::Harmonic { .. }
+            | Effect::Table { .. }
+            | Effect::EncoderScale { .. }
+            | Effect::Backlash { .. }
+            | Effect::Compliance { .. }
+            | Effect::Weight { .. }
+            | Effect::Coupling { .. } => false,
+        }
     }
 
     /// Turn of its joint, rad, at the joint values `q` (rad or m) under the torques `torque` (N·m;

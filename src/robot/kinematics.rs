@@ -27,7 +27,7 @@ use crate::units::STANDARD_GRAVITY;
 /// assert!((kinematics.joint_jacobian(0).z - 0.5).abs() < 1e-15);
 /// let mut torque = [0.0];
 /// let gravity = [0.0, 0.0, -9.80665].into();
-/// kinematics.torques(&Loads { gravity, payload: None, tip_force: [0.0; 3].into() }, &mut torque);
+/// kinematics.torques(&Loads::new(gravity, None, [0.0; 3].into()), &mut torque);
 /// assert!((torque[0] + 2.0 * 9.80665 * 0.5).abs() < 1e-12); // −m·g·a
 /// ```
 #[derive(Debug, Clone)]

@@ -234,7 +234,7 @@ impl RobotLaw {
         let names = [variable.symbol(), SIDE].into_iter();
         let names: Vec<&str> = names.chain(constants.iter().map(|own| own.name.as_str())).collect();
         let read =
-            |(k, formula): (usize, &String)| Expression::new(formula, &names).map_err(|fault| (k, fault));
+            |(k, formula): (usize, &String)| Expression::new(formula, &names).map_err(|error| (k, error));
         let expressions = formulas.iter().enumerate().map(read).collect::<Result<_, _>>()?;
         let mut law = RobotLaw {
             place,
@@ -295,7 +295,7 @@ impl RobotLaw {
 
     /// `turn of joint 4 per radian of joint 2: 8.3*q in µrad, for the angle of joint 3 from −80 to
     /// 80 °`.
-    pub fn words(&self) -> String {
+    pub fn description(&self) -> String {
         let significant = |x: f64| crate::units::significant(x, 3);
         let number = |own: &LawConstant| format!(", {} = {} {}", own.name, significant(own.value), own.unit);
         let numbers: String = self.constants.iter().map(|own| number(own).trim_end().to_owned()).collect();

@@ -235,10 +235,10 @@ unit = "°"
                 "can have with each other",
             ),
         ];
-        for (text, place, words) in cases {
+        for (text, place, expected) in cases {
             let message = arm().add_beside("e.toml", &text).unwrap_err().to_string();
             assert!(
-                message.contains(&format!("e.toml{place}")) && message.contains(words),
+                message.contains(&format!("e.toml{place}")) && message.contains(expected),
                 "{text}{message}"
             );
         }

@@ -15,8 +15,7 @@ pub const STANDSTILL: f64 = 1e-7;
 impl Robot {
     /// True where the joints' values depend on the order of the poses.
     pub fn has_moves(&self) -> bool {
-        self.effects.iter().any(|e| matches!(e, Effect::PlayByApproach { .. } | Effect::Lag { .. }))
-            || self.sided_laws().next().is_some()
+        self.effects.iter().any(Effect::follows_moves) || self.sided_laws().next().is_some()
     }
 
     /// Joint values (rad or m, one per joint, pose after pose) with what the moves between them
@@ -54,7 +53,14 @@ impl Robot {
                         let own = |j: &usize| joint.is_none_or(|joint| joint == *j);
                         (0..n).filter(own).for_each(|j| turned[row * n + j] += fraction * step[j]);
                     }
-                    _ => {}
+                    // by where the robot is, whatever it did before
+                    Effect::Harmonic { .. }
+                    | Effect::Table { .. }
+                    | Effect::EncoderScale { .. }
+                    | Effect::Backlash { .. }
+                    | Effect::Compliance { .. }
+                    | Effect::Weight { .. }
+                    | Effect::Coupling { .. } => {}
                 }
             }
         }

@@ -14,6 +14,7 @@ const ROUNDS: usize = 3;
 
 /// A pose to predict.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct PredictionQuery {
     /// Its name.
     pub pose: String,
@@ -21,8 +22,16 @@ pub struct PredictionQuery {
     pub joints: Vec<f64>,
 }
 
+impl PredictionQuery {
+    /// A pose by its name and its joint values, rad or m.
+    pub fn new(pose: impl Into<String>, joints: Vec<f64>) -> PredictionQuery {
+        PredictionQuery { pose: pose.into(), joints }
+    }
+}
+
 /// A predicted tip.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct PredictedTip {
     /// In {0}, m.
     pub tip: Vector3<f64>,
@@ -81,7 +90,7 @@ impl Robot {
         let slopes = slopes
             .map(|known| Matrix3xX::from_columns(&known.parameters.iter().map(column).collect::<Vec<_>>()));
         let placement: Vec<Parameter> =
-            Parameter::all(self.joints.len()).into_iter().filter(Parameter::is_placement).collect();
+            Parameter::all(self.joints.len()).into_iter().filter(|p| p.is_placement()).collect();
         let placement = Matrix3xX::from_columns(&placement.iter().map(column).collect::<Vec<_>>());
         let jacobian: Vec<_> = (0..self.joints.len()).map(|j| kinematics.joint_jacobian(j)).collect();
         let joints = Matrix3xX::from_columns(&jacobian);

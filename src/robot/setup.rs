@@ -20,6 +20,7 @@ use crate::spatial::{Pose, exponential};
 /// assert_eq!((setup.calibrated().joints[0].link.a, robot.joints[0].link.a), (0.501, 0.5));
 /// ```
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Setup<'r> {
     /// The nominal robot: joints, masses, limits.
     pub robot: &'r Robot,

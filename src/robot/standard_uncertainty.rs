@@ -7,7 +7,7 @@
 
 use serde::Deserialize;
 
-use super::Parameter;
+use super::{Parameter, ParameterGroup};
 use crate::error::Result;
 use crate::toml_text::{Number, TomlText};
 use crate::units::{DEG, MM};
@@ -49,14 +49,14 @@ impl Default for StandardUncertainty {
 impl StandardUncertainty {
     /// Of a parameter, in its unit; `None` for what no drawing says: base, tool, compliance.
     pub fn of(&self, parameter: Parameter) -> Option<f64> {
-        match parameter {
-            Parameter::D(_) | Parameter::A(_) => Some(self.length),
-            Parameter::Alpha(_) | Parameter::Beta(_) => Some(self.angle),
-            Parameter::Theta(_) => Some(self.joint_zero),
-            Parameter::BasePosition(_)
-            | Parameter::BaseRotation(_)
-            | Parameter::Tool(_)
-            | Parameter::Compliance(_) => None,
+        match parameter.group() {
+            ParameterGroup::LinkLength => Some(self.length),
+            ParameterGroup::LinkTwist => Some(self.angle),
+            ParameterGroup::JointZero => Some(self.joint_zero),
+            ParameterGroup::BasePosition
+            | ParameterGroup::BaseRotation
+            | ParameterGroup::Tool
+            | ParameterGroup::Compliance => None,
         }
     }
 

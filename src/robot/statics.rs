@@ -9,6 +9,7 @@ use super::{Body, Kinematics, Motion};
 
 /// What pulls at the robot in one configuration, in {W}.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Loads {
     /// Acceleration of gravity, m/s².
     pub gravity: Vector3<f64>,
@@ -16,6 +17,13 @@ pub struct Loads {
     pub payload: Option<Body>,
     /// Force on the tip, N.
     pub tip_force: Vector3<f64>,
+}
+
+impl Loads {
+    /// Gravity (m/s²), what hangs on the flange, and a force on the tip (N), in {W}.
+    pub fn new(gravity: Vector3<f64>, payload: Option<Body>, tip_force: Vector3<f64>) -> Loads {
+        Loads { gravity, payload, tip_force }
+    }
 }
 
 impl Kinematics<'_> {

@@ -15,6 +15,7 @@ use crate::toml_text::{Number, TomlText};
 
 /// Covariance of parameters of the chain {0} → joints → {T} → tip.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Uncertainty {
     /// n parameters.
     pub parameters: Vec<Parameter>,
@@ -59,13 +60,10 @@ pub(super) struct RawUncertainty {
 /// The section of a robot with so many joints.
 pub(super) fn read(toml: &TomlText, raw: &RawUncertainty, joints: usize) -> Result<Uncertainty> {
     let count = raw.parameters.get_ref().len();
-    let parameter = |name: &Spanned<String>| match Parameter::from_key(name.get_ref(), joints) {
-        Some(Parameter::BasePosition(_) | Parameter::BaseRotation(_)) | None => Err(toml.is(
-            "uncertainty.parameters",
-            name,
-            "parameters as theta2_deg, a3_mm, tool_x_mm, c2_urad_per_nm",
-        )),
-        Some(parameter) => Ok(parameter),
+    let parameter = |name: &Spanned<String>| {
+        let known = Parameter::from_key(name.get_ref(), joints).filter(|parameter| !parameter.is_base());
+        let expected = "parameters as theta2_deg, a3_mm, tool_x_mm, c2_urad_per_nm";
+        known.ok_or_else(|| toml.is("uncertainty.parameters", name, expected))
     };
     let parameters: Vec<Parameter> = raw.parameters.get_ref().iter().map(parameter).collect::<Result<_>>()?;
     if raw.std_error.get_ref().len() != count {
@@ -133,7 +131,7 @@ mod tests {
     #[test]
     fn what_is_wrong_is_said() {
         let message = |section: &str| robot(&format!("[uncertainty]\n{section}")).unwrap_err().to_string();
-        for (section, words) in [
+        for (section, expected) in [
             ("parameters = [\"base_x\"]\nstd_error = [1]\ncorrelation = []", "theta2_deg"),
             ("parameters = [\"a1_mm\"]\nstd_error = []\ncorrelation = []", "1 numbers"),
             ("parameters = [\"a1_mm\"]\nstd_error = [-1]\ncorrelation = []", "a number >= 0"),
@@ -141,7 +139,7 @@ mod tests {
             ("parameters = [\"a1_mm\", \"d1_mm\"]\nstd_error = [1, 1]\ncorrelation = [[2]]", "from -1 to 1"),
         ] {
             let message = message(section);
-            assert!(message.contains(words) && message.contains("arm.toml:"), "{section}: {message}");
+            assert!(message.contains(expected) && message.contains("arm.toml:"), "{section}: {message}");
         }
     }
 }

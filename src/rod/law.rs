@@ -10,6 +10,11 @@
 //! dx, dy, dz   to what a sensor shows                                  µm
 //! ```
 
+mod place;
+
+use std::fmt;
+
+pub use self::place::RodLawPlace;
 use crate::expression::{Expression, Fault};
 
 /// 1 on the way up, −1 on the way down, in formulas.
@@ -71,7 +76,7 @@ impl MemoryConstant {
     }
 
     /// `r > 0`, `n from 1 to 8`.
-    pub fn words(&self) -> String {
+    pub fn description(&self) -> String {
         match self.range {
             None => format!("{} > 0", self.name),
             Some((low, high)) => format!("{} from {low} to {high}", self.name),
@@ -98,8 +103,8 @@ pub struct LawConstant {
 /// A law of a rod's file.
 #[derive(Debug, Clone)]
 pub struct RodLaw {
-    /// `rod`, `clamp`, `root`, `slide`, a joint's name, `dx`, `dy` or `dz`.
-    pub place: String,
+    /// Where it acts.
+    pub place: RodLawPlace,
     /// What it is a function of.
     pub variable: LawVariable,
     /// In the variable, `side` and the constants; see the [module](self) for its unit.
@@ -163,7 +168,7 @@ impl LawVariable {
     }
 
     /// In sentences.
-    pub fn words(self) -> &'static str {
+    pub fn description(self) -> &'static str {
         match self {
             LawVariable::Load => "load",
             LawVariable::AlongPositive => "load along the positive axes",
@@ -197,13 +202,13 @@ impl LawVariable {
     }
 
     /// True where a law of this variable may act at a place.
-    pub fn is_at(self, place: &str) -> bool {
+    pub fn is_at(self, place: &RodLawPlace) -> bool {
         match place {
-            "rod" => !matches!(self, LawVariable::Moment | LawVariable::Reading),
-            "clamp" => self == LawVariable::Load,
-            "slide" => self == LawVariable::SinceChange,
-            "dx" | "dy" | "dz" => self == LawVariable::Reading,
-            _ => self == LawVariable::Moment,
+            RodLawPlace::Rod => !matches!(self, LawVariable::Moment | LawVariable::Reading),
+            RodLawPlace::Clamp => self == LawVariable::Load,
+            RodLawPlace::Slide => self == LawVariable::SinceChange,
+            RodLawPlace::Sensor(_) => self == LawVariable::Reading,
+            RodLawPlace::Root | RodLawPlace::Joint(_) => self == LawVariable::Moment,
         }
     }
 }
@@ -241,7 +246,7 @@ impl RodLaw {
     /// # Errors
     /// A [`Fault`] of the formula with its place in it.
     pub fn new(
-        place: impl Into<String>,
+        place: RodLawPlace,
         variable: LawVariable,
         formula: impl Into<String>,
         constants: Vec<LawConstant>,
@@ -251,7 +256,6 @@ impl RodLaw {
         let names = [variable.symbol(), SIDE].into_iter();
         let names: Vec<&str> = names.chain(constants.iter().map(|own| own.name.as_str())).collect();
         let expression = Expression::new(&formula, &names)?;
-        let place = place.into();
         Ok(RodLaw { place, variable, formula, memory: None, constants, range, source: None, expression })
     }
 
@@ -270,7 +274,7 @@ impl RodLaw {
     /// What a law of the rod does to its tip is known wherever the rod is; a law of the rig (clamp,
     /// slide, sensors) stays there.
     pub fn is_of_rod(&self) -> bool {
-        !matches!(self.place.as_str(), "clamp" | "slide" | "dx" | "dy" | "dz")
+        self.place.is_of_rod()
     }
 
     /// True where the load that hangs now is all it takes to know what the law does.
@@ -282,22 +286,22 @@ impl RodLaw {
 
     /// Unit of what the formula adds, for people.
     pub fn unit(&self) -> &'static str {
-        match self.place.as_str() {
-            "rod" if self.variable == LawVariable::Load => "N",
-            "rod" | "slide" => "%",
-            "clamp" | "dx" | "dy" | "dz" => "µm",
-            _ => "µrad",
+        match &self.place {
+            RodLawPlace::Rod if self.variable == LawVariable::Load => "N",
+            RodLawPlace::Rod | RodLawPlace::Slide => "%",
+            RodLawPlace::Clamp | RodLawPlace::Sensor(_) => "µm",
+            RodLawPlace::Root | RodLawPlace::Joint(_) => "µrad",
         }
     }
 
     /// Symbol of what the formula adds to.
     pub fn result(&self) -> &'static str {
-        match self.unit() {
-            "N" => "ΔF",
-            "%" => "Δu/u",
-            "µrad" => "Δθ",
-            _ if self.place == "clamp" => "Δu",
-            _ => "Δy",
+        match &self.place {
+            RodLawPlace::Rod if self.variable == LawVariable::Load => "ΔF",
+            RodLawPlace::Rod | RodLawPlace::Slide => "Δu/u",
+            RodLawPlace::Clamp => "Δu",
+            RodLawPlace::Sensor(_) => "Δy",
+            RodLawPlace::Root | RodLawPlace::Joint(_) => "Δθ",
         }
     }
 
@@ -306,38 +310,25 @@ impl RodLaw {
     pub fn is_beyond(&self, x: f64) -> bool {
         x > self.range.1 * BEYOND || x < self.range.0.min(0.0) * BEYOND
     }
+}
 
-    /// `ΔF = k*max(F - F_0, 0) in N at the rod, k = −0.34 N/N, F_0 = 7.7 N, for F from 1 to 10 N`.
-    pub fn words(&self) -> String {
-        let (low, high) = self.range;
+/// `ΔF = k*max(F - F_0, 0) in N at the rod, k = −0.34 N/N, F_0 = 7.7 N, for F from 1 to 10 N`.
+impl fmt::Display for RodLaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let significant = |x: f64| crate::units::significant(x, 3);
-        let memory = match self.memory {
+        write!(f, "{} = {} in {} at {}", self.result(), self.formula, self.unit(), self.place.spoken())?;
+        for own in &self.constants {
+            let number = format!(", {} = {} {}", own.name, significant(own.value), own.unit);
+            f.write_str(number.trim_end())?;
+        }
+        let (symbol, unit, (low, high)) = (self.variable.symbol(), self.variable.unit(), self.range);
+        write!(f, ", for {symbol} from {} to {} {unit}", significant(low), significant(high))?;
+        f.write_str(match self.memory {
             Some(LawMemory::Stop) => ", of what a play leaves of it",
             Some(LawMemory::BoucWen) => ", of what a Bouc–Wen loop makes of it",
             Some(LawMemory::Lag) => ", of what it lacks of its lagged self",
             None => "",
-        };
-        let number = |own: &LawConstant| format!(", {} = {} {}", own.name, significant(own.value), own.unit);
-        let numbers: String = self.constants.iter().map(|own| number(own).trim_end().to_owned()).collect();
-        format!(
-            "{} = {} in {} at {}{numbers}, for {} from {} to {} {}{memory}",
-            self.result(),
-            self.formula,
-            self.unit(),
-            self.at_place(),
-            self.variable.symbol(),
-            significant(low),
-            significant(high),
-            self.variable.unit()
-        )
-    }
-
-    /// `the root`, `sleeve-a`.
-    pub fn at_place(&self) -> String {
-        match self.place.as_str() {
-            "rod" | "clamp" | "root" | "slide" => format!("the {}", self.place),
-            named => named.to_owned(),
-        }
+        })
     }
 }
 
@@ -369,13 +360,17 @@ mod tests {
     #[test]
     fn a_law_is_its_formula() {
         let constants = vec![constant("k", -0.5), constant("F_0", 4.0)];
-        let law = RodLaw::new("rod", LawVariable::Load, "k*max(F - F_0, 0)", constants, (1.0, 10.0)).unwrap();
+        let law =
+            RodLaw::new(RodLawPlace::Rod, LawVariable::Load, "k*max(F - F_0, 0)", constants, (1.0, 10.0))
+                .unwrap();
         assert_eq!((law.at(3.0, 1.0), law.at(10.0, 1.0), law.unit()), (0.0, -3.0, "N"));
         assert!(law.is_of_rod() && law.is_static());
         assert!(!law.is_beyond(0.5) && law.is_beyond(10.1) && law.is_beyond(-0.1));
-        let sided = RodLaw::new("clamp", LawVariable::Load, "2*side*F", Vec::new(), (1.0, 10.0)).unwrap();
+        let sided =
+            RodLaw::new(RodLawPlace::Clamp, LawVariable::Load, "2*side*F", Vec::new(), (1.0, 10.0)).unwrap();
         assert!(!sided.is_of_rod() && !sided.is_static());
-        let fault = RodLaw::new("rod", LawVariable::Load, "k*M", Vec::new(), (0.0, 1.0)).unwrap_err();
+        let fault =
+            RodLaw::new(RodLawPlace::Rod, LawVariable::Load, "k*M", Vec::new(), (0.0, 1.0)).unwrap_err();
         assert_eq!(fault.found, "\"k\"");
     }
 }

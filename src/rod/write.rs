@@ -121,7 +121,7 @@ fn material_details(material: &Material) -> Vec<String> {
 /// The lines of a law.
 fn law(law: &RodLaw) -> Vec<String> {
     let mut lines = vec![
-        format!("\n[[law]]\nplace = {}", quoted(&law.place)),
+        format!("\n[[law]]\nplace = {}", quoted(&law.place.to_string())),
         format!("variable = {}", quoted(law.variable.key())),
         format!("formula = {}", quoted(&law.formula)),
     ];

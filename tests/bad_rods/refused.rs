@@ -737,7 +737,7 @@ fn a_law_says_what_is_wrong_where_in_its_formula() {
     let with_law = changed(&[("[tip]", LAW)]);
     let rod = read(&with_law).expect(&with_law);
     assert_eq!(
-        rod.laws[0].words(),
+        rod.laws[0].to_string(),
         "Δθ = k*max(M - M_0, 0) in µrad at the root, k = 12.0, M_0 = 2.00, for M from 0.500 to 6.00 N·m"
     );
     for (piece, wrong, expected) in [

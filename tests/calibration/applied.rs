@@ -13,14 +13,9 @@ use rodcal::robot::Effect;
 use super::lab::Dice;
 
 pub fn names(robot: &str, validation: Option<&str>) -> FileNames {
-    FileNames {
-        robot: robot.into(),
-        effects: None,
-        rod: None,
-        rig: None,
-        measurements: "measurements.csv".into(),
-        validation: validation.map(str::to_owned),
-    }
+    let mut names = FileNames::new(robot, "measurements.csv");
+    names.validation = validation.map(str::to_owned);
+    names
 }
 
 /// The campaign that was written; `robot` is what stood in its robot file, where that was not

@@ -8,7 +8,9 @@ use std::sync::LazyLock;
 use nalgebra::Vector3;
 use rodcal::calibration::campaign::Refit;
 use rodcal::calibration::{Calibration, Campaign, Mode, Options, calibrate};
-use rodcal::diagnosis::calibration::{Applied, CalibrationDiagnosis, apply, diagnose, diagnose_calibrated};
+use rodcal::diagnosis::calibration::{
+    Applied, CalibrationDiagnosis, apply, diagnose_as_recorded, diagnose_calibrated,
+};
 use rodcal::inference::law::Form;
 use rodcal::prelude::*;
 use rodcal::report::{self, Block};
@@ -53,7 +55,7 @@ fn tracked(seed: u64, (seen, unseen): (usize, usize), truth: Truth) -> Campaign 
 }
 
 fn diagnosed(campaign: &Campaign) -> CalibrationDiagnosis<'_> {
-    diagnose(campaign, Mode::None, &Options::default()).unwrap()
+    diagnose_as_recorded(campaign, Mode::None, &Options::default()).unwrap()
 }
 
 fn applied(found: &CalibrationDiagnosis) -> Applied {
@@ -77,7 +79,7 @@ fn assert_settled(
     assert!(applied.removed.is_empty() && applied.left_out.is_empty(), "{applied:?}");
     let again = written(&applied, "");
     let [law] = &again.robot.laws[..] else { panic!("{:?}", again.robot.laws) };
-    assert_eq!((law.place, law.per_joint, law.variable), (place, per, variable), "{}", law.words());
+    assert_eq!((law.place, law.per_joint, law.variable), (place, per, variable), "{}", law.description());
     let after = calibrate(&again, Mode::None, &Options::default()).unwrap();
     let noise = 3.0f64.sqrt() * NOISE;
     assert!(validated(&after) < 1.15 * noise, "{} for {noise}", validated(&after));

@@ -1,4 +1,4 @@
-//! Fix, free, prior: constraints on single parameters are kept.
+//! Constraints of single parameters: fixed, freed, known beforehand.
 
 use nalgebra::{Isometry3, Vector3};
 use rodcal::calibration::{Calibration, Campaign, Estimated, Mode, Options, calibrate};

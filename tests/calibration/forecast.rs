@@ -32,7 +32,7 @@ fn campaigns_turn_out_as_forecast() {
     for (kind, (mode, clamp_error, within)) in
         [(Mode::Fea, 0.0, 0.08), (Mode::Fea, 1.5e-4, 0.4), (Mode::None, 0.0, 0.08)].into_iter().enumerate()
     {
-        let plan = Plan { poses_per_clamp: 7, validation_poses: 40, clamp_error, ..Plan::default() };
+        let plan = Plan::of_poses(7, 40).with_clamp_error(clamp_error);
         let simulator = Simulator::of(include_str!("../../rods/6.toml"), plan.clone());
         let of_seeds = in_parallel(SEEDS, |seed| {
             let (_, mut campaign) = simulator.run((400 + kind * SEEDS + seed) as u64);

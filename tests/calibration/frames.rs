@@ -25,7 +25,7 @@ fn calibrated(campaign: &Campaign, mode: Mode) -> Calibration<'_> {
 }
 
 fn is_of_the_base(parameter: Parameter) -> bool {
-    matches!(parameter, Parameter::BasePosition(_) | Parameter::BaseRotation(_))
+    parameter.is_base()
 }
 
 /// Asserts that two calibrations found the same robot, with the same certainty.

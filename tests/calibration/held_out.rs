@@ -102,12 +102,10 @@ fn held_out_errors_are_those_of_the_fit_without_them() {
     for row in of_fold(2, true) {
         let mut kinematics = Kinematics::new(&trained.setup);
         let mut torque = vec![0.0; 6];
-        let loads = rodcal::robot::Loads {
-            gravity: trained.setup.base().rotation * campaign.robot.gravity,
-            payload: compensation.payload,
-            tip_force: recording.groups[recording.rows[row].group].device.rotation
-                * compensation.contact_force,
-        };
+        let device = &recording.groups[recording.rows[row].group].device;
+        let gravity = trained.setup.base().rotation * campaign.robot.gravity;
+        let tip_force = device.rotation * compensation.contact_force;
+        let loads = rodcal::robot::Loads::new(gravity, compensation.payload, tip_force);
         for _ in 0..5 {
             kinematics.update(recording.joints(row), &torque);
             kinematics.torques(&loads, &mut torque);
@@ -126,7 +124,7 @@ fn modes_that_are_the_same_do_not_differ() {
     let mut campaign = campaign();
     campaign.contact_force = Some(Vector3::zeros());
     campaign.robot.gravity = Vector3::zeros();
-    let options = CompareOptions { draws: 60, ..CompareOptions::default() };
+    let options = CompareOptions::default().with_draws(60);
     let comparison = compare(&campaign, &options, &|_| ()).unwrap();
     assert_eq!(comparison.differences.len(), 3);
     for d in &comparison.differences {
@@ -144,7 +142,7 @@ fn chance_is_not_called_a_difference() {
     let of_seeds = in_parallel(SEEDS, |seed| {
         let (_, mut campaign) = simulator.run(500 + seed as u64);
         campaign.validation = None;
-        let options = CompareOptions { draws: 60, ..CompareOptions::default() };
+        let options = CompareOptions::default().with_draws(60);
         let comparison = compare(&campaign, &options, &|_| ()).unwrap();
         assert!(comparison.cross_validations.is_some());
         let of_difference =
@@ -164,7 +162,7 @@ fn chance_is_not_called_a_difference() {
 #[test]
 fn a_better_mode_is_called_better() {
     let campaign = campaign();
-    let options = CompareOptions { draws: 60, ..CompareOptions::default() };
+    let options = CompareOptions::default().with_draws(60);
     let comparison = compare(&campaign, &options, &|_| ()).unwrap();
     let d = comparison.differences.iter().find(|d| d.mode == Mode::Calc && d.against == Mode::None).unwrap();
     assert!(d.is_significant && d.mean < 0.0 && d.interval.1 < 0.0, "{d:?}");

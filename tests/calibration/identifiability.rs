@@ -89,7 +89,7 @@ fn a_joint_that_never_moves_hides_its_neighbours() {
     // stands still makes one link of two
     let parameters: Vec<Parameter> = still.parameters.iter().map(|p| p.parameter).collect();
     let poses: Vec<Vec<f64>> = (0..60).map(|row| campaign.measurements.joints(row).to_vec()).collect();
-    let ranges = parameters.iter().map(|&p| plausible_range(p, 0.0));
+    let ranges = parameters.iter().map(|&p| plausible_range(p, &[]));
     let mut jacobian = jacobian(&made.lab, &parameters, &poses);
     jacobian.column_iter_mut().zip(ranges).for_each(|(mut column, range)| column.scale_mut(range));
     let svd = jacobian.svd(false, true);
@@ -117,7 +117,7 @@ fn a_joint_that_never_moves_hides_its_neighbours() {
         let name = p.parameter.to_string();
         assert_eq!(p.identifiable, p.std_error.is_some(), "{name}");
         // nothing explodes: what robots as built are off, and the range that they may be off
-        let (off, range) = ((reference.value - reference.nominal).abs(), plausible_range(p.parameter, 0.0));
+        let (off, range) = ((reference.value - reference.nominal).abs(), plausible_range(p.parameter, &[]));
         assert!((p.value - p.nominal).abs() < off + range, "{name}: {} {}", p.value, p.nominal);
         // what is known is known well, for all that a joint less moves
         if let (Some(now), Some(before)) = (p.std_error, reference.std_error) {

@@ -2,11 +2,11 @@
 //! where its equations hold.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use rodcal::calibration::simulate::{Plan, RobotErrors};
+use rodcal::calibration::simulate::Plan;
 use rodcal::calibration::{
     Calibration, CompareOptions, Comparison, Mode, Options, calibrate, compare, default_mode, modes,
 };
-use rodcal::units::{MM, UM};
+use rodcal::units::UM;
 
 use super::lab::{PHYSICS, isometry};
 use super::recovery::Clamped;
@@ -15,15 +15,9 @@ use super::simulated::Simulator;
 
 /// A campaign with a rod that is 1.3 times as soft as its model, and that sags by some millimetres.
 fn soft() -> Simulator {
-    let plan = Plan {
-        poses_per_clamp: 16,
-        validation_poses: 60,
-        rod_factor: 1.3,
-        errors: RobotErrors { length: 0.3 * MM, offset: 1e-3, tilt: 0.3e-3, joint_turn: 0.3e-3 },
-        repeatability: 15.0 * UM,
-        scanner_noise: 20.0 * UM,
-        ..Plan::default()
-    };
+    let mut plan = Plan::of_poses(16, 60).with_rod_factor(1.3);
+    plan.errors.joint_turn = 0.3e-3;
+    (plan.repeatability, plan.scanner_noise) = (15.0 * UM, 20.0 * UM);
     let thin = rods::SOFT.replace("inner_diameter_mm = 12", "inner_diameter_mm = 7");
     Simulator::of(&thin.replace("outer_diameter_mm = 16", "outer_diameter_mm = 10"), plan)
 }
@@ -38,7 +32,7 @@ fn what_was_measured_beats_what_was_modelled_beats_nothing() {
     let simulator = soft();
     let (_, campaign) = simulator.run(7);
     assert_eq!(modes(&campaign), Mode::ALL);
-    let options = CompareOptions { draws: 30, ..CompareOptions::default() };
+    let options = CompareOptions::default().with_draws(30);
     let comparison = compare(&campaign, &options, &|_| ()).unwrap();
     let mean = |mode| comparison.summary(of_mode(&comparison, mode).0).mean;
     let residual = |mode| {

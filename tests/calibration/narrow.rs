@@ -127,7 +127,7 @@ fn what_the_data_do_not_support_is_held() {
         ("v.csv", &validation),
     ]);
     let whole = calibrate(&campaign, Mode::None, &Options::default()).unwrap();
-    let pruned = calibrate(&campaign, Mode::None, &Options { prune: true, ..Options::default() }).unwrap();
+    let pruned = calibrate(&campaign, Mode::None, &Options::default().with_pruning(true)).unwrap();
     let own = |p: &&rodcal::calibration::Estimated| !p.parameter.is_placement();
     let (all, kept) = (whole.parameters.iter().filter(own).count(), pruned.parameters.iter().filter(own));
     assert!(kept.clone().all(|p| p.is_supported()));

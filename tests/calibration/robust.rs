@@ -25,7 +25,7 @@ fn spoilt(campaign: &Campaign) -> Campaign {
 }
 
 fn calibrated(campaign: &Campaign, robust: Robust) -> Calibration<'_> {
-    let found = calibrate(campaign, Mode::Fea, &Options { robust, ..Options::default() }).unwrap();
+    let found = calibrate(campaign, Mode::Fea, &Options::default().with_robust(robust)).unwrap();
     assert!(found.is_converged, "{robust:?}: {} {:?}", found.fit.reason, found.passes);
     found
 }

@@ -20,7 +20,7 @@ pub struct Simulator {
 impl Simulator {
     /// The paper's rod 5# with 5 × 14 poses and 10 of validation.
     pub fn new() -> Simulator {
-        let plan = Plan { poses_per_clamp: 14, validation_poses: 10, ..Plan::default() };
+        let plan = Plan::of_poses(14, 10);
         Simulator::of(include_str!("../../rods/5.toml"), plan)
     }
 
@@ -31,7 +31,7 @@ impl Simulator {
     }
 
     pub fn run(&self, seed: u64) -> (Simulation<'_>, Campaign) {
-        let plan = Plan { seed, ..self.plan.clone() };
+        let plan = self.plan.clone().with_seed(seed);
         let simulation = simulate(&self.robot, &self.rod, &self.model, &plan).unwrap();
         let files = campaign_files(&simulation, "builtin:tx90", "rod.toml");
         let mut files: Vec<(&str, &str)> = files.iter().map(|(n, t)| (n.as_str(), t.as_str())).collect();

@@ -48,7 +48,7 @@ fn true_noise(plan: &Plan) -> f64 {
 }
 
 fn said(simulation: &Simulation, campaign: &Campaign, robust: Robust) -> Said {
-    let found = calibrate(campaign, Mode::Fea, &Options { robust, ..Options::default() }).unwrap();
+    let found = calibrate(campaign, Mode::Fea, &Options::default().with_robust(robust)).unwrap();
     let seed = simulation.plan.seed;
     assert!(found.is_converged, "seed {seed}: {} {:?}", found.fit.reason, found.passes);
     let width = match campaign.noise {

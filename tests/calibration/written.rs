@@ -34,11 +34,9 @@ fn a_table_predicts_the_same_tips() {
     for row in 0..campaign.measurements.len() {
         let q = campaign.measurements.joints(row);
         let device = &campaign.measurements.groups[campaign.measurements.rows[row].group].device;
-        let loads = Loads {
-            gravity: setup.base().rotation * robot.gravity,
-            payload: Some(rodcal::robot::Body { mass: rod.mass(), centre: rod.centre_of_mass() }),
-            tip_force: device.rotation * campaign.contact_force.unwrap(),
-        };
+        let payload = rodcal::robot::Body { mass: rod.mass(), centre: rod.centre_of_mass() };
+        let gravity = setup.base().rotation * robot.gravity;
+        let loads = Loads::new(gravity, Some(payload), device.rotation * campaign.contact_force.unwrap());
         for _ in 0..6 {
             kinematics.update(q, &torque);
             kinematics.torques(&loads, &mut torque);

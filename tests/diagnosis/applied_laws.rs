@@ -1,8 +1,8 @@
 //! A law that was proposed, written into the rod file, and read again.
 
 use rodcal::rig;
-use rodcal::rig::readings::Readings;
-use rodcal::rod::Rod;
+use rodcal::rig::readings::{Axis, Readings};
+use rodcal::rod::{Rod, RodLawPlace};
 use rodcal::units::UM;
 use rodcal_trial::rig::{CaseSpec, Effect, SimulatedCase};
 use serde_json::Value;
@@ -36,8 +36,8 @@ fn a_gap_that_closes_is_written_and_read() {
     let (before, after, again) = applied(&rod, &readings);
     assert_settled(&before, &after, 1.0);
     let [law] = &again.laws[..] else { panic!("{:?}", again.laws) };
-    assert_eq!((law.place.as_str(), law.unit()), ("rod", "N"));
-    assert!(law.at(4.0, 1.0) == 0.0 && (law.at(10.0, 1.0) + 0.3 * 4.4).abs() < 0.1, "{}", law.words());
+    assert_eq!((&law.place, law.unit()), (&RodLawPlace::Rod, "N"));
+    assert!(law.at(4.0, 1.0) == 0.0 && (law.at(10.0, 1.0) + 0.3 * 4.4).abs() < 0.1, "{law}");
     let fit = |rod: &Rod| {
         let readings = Readings::from_text("f", &readings).unwrap();
         rig::fit(&readings, Some(rod), &rig::Options::default()).unwrap()
@@ -57,7 +57,7 @@ fn the_ripple_of_a_sensor_is_written_and_read() {
     let SimulatedCase { rod, readings, .. } = spec().simulated(&[ripple], 32);
     let (before, after, again) = applied(&rod, &readings);
     assert_settled(&before, &after, 1.0);
-    assert_eq!(again.laws[0].place, "dy");
+    assert_eq!(again.laws[0].place, RodLawPlace::Sensor(Axis::Y));
     assert!(again.warnings.iter().any(|warning| warning.to_string().contains("the rig's")));
 }
 

@@ -128,14 +128,8 @@ fn a_campaign_comes_back() {
         _ => Ok(corpus::POSES.to_owned()),
     };
     let campaign = Campaign::from_texts("c", corpus::CAMPAIGN, &open).unwrap();
-    let names = FileNames {
-        robot: campaign.robot_file.clone(),
-        effects: None,
-        rod: campaign.rod_file.clone(),
-        rig: Some("readings.csv".into()),
-        measurements: "m.csv".into(),
-        validation: None,
-    };
+    let mut names = FileNames::new(&campaign.robot_file, "m.csv");
+    (names.rod, names.rig) = (campaign.rod_file.clone(), Some("readings.csv".into()));
     let text = campaign.to_toml(&names, &["a\nrobot = 3".into()]);
     let measurements = campaign.measurements.to_csv(&campaign.robot, &[]);
     let again = Campaign::from_texts("c", &text, &|name| match name {

@@ -247,7 +247,7 @@ fn a_calibrated_urdf_with_what_stands_beside_it_predicts_as_it_was_calibrated() 
     let (robot_text, rod_text) = (read("robots/six-axis.urdf"), read("rods/5.toml"));
     let robot = Robot::from_text("robot.urdf", &robot_text, None, None).unwrap();
     let rod = Rod::from_toml("rod.toml", &rod_text).unwrap();
-    let plan = Plan { poses_per_clamp: 8, validation_poses: 5, ..Plan::default() };
+    let plan = Plan::of_poses(8, 5);
     let named = ("robot.urdf".to_owned(), robot_text);
     let simulated = simulate(&robot, named, (&rod, rod_text), &plan, "campaign.toml", &|| ()).unwrap();
     let text_of = |files: &[(String, Vec<u8>)], name: &str| {

@@ -23,6 +23,82 @@ pub const DEG: f64 = std::f64::consts::PI / 180.0;
 pub const URAD: f64 = 1e-6;
 /// µrad/(N·m) in rad/(N·m).
 pub const URAD_PER_NM: f64 = 1e-6;
+/// Hour in seconds.
+pub const HOUR: f64 = 3600.0;
+
+/// A unit in which a number is shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Unit {
+    /// As people write it; empty for a number without one.
+    pub symbol: &'static str,
+    /// As keys end; empty for a number without one.
+    pub suffix: &'static str,
+    /// What one of it is in SI.
+    pub si: f64,
+}
+
+impl Unit {
+    /// Of a number without a unit.
+    pub const NONE: Unit = Unit { symbol: "", suffix: "", si: 1.0 };
+    /// All that keys end with; of several that fit the longest is meant.
+    const ALL: [Unit; 33] = [
+        Unit { symbol: "1/rev", suffix: "cycles_per_rev", si: 1.0 },
+        Unit { symbol: "1/decade", suffix: "per_decade", si: 1.0 },
+        Unit { symbol: "µrad/(N·m)³", suffix: "urad_per_nm3", si: URAD },
+        Unit { symbol: "µrad/(N·m)²", suffix: "urad_per_nm2", si: URAD },
+        Unit { symbol: "µrad/(N·m)", suffix: "urad_per_nm", si: URAD_PER_NM },
+        Unit { symbol: "µm/(m·K)", suffix: "um_per_m_per_k", si: UM },
+        Unit { symbol: "µm/(m·h)", suffix: "um_per_m_per_h", si: UM / HOUR },
+        Unit { symbol: "µrad/m", suffix: "urad_per_m", si: URAD },
+        Unit { symbol: "µm/m", suffix: "um_per_m", si: UM },
+        Unit { symbol: "µrad/rad", suffix: "urad_per_rad", si: URAD },
+        Unit { symbol: "N/mm", suffix: "n_per_mm", si: 1.0 / MM },
+        Unit { symbol: "1/N²", suffix: "per_n2", si: 1.0 },
+        Unit { symbol: "µm/N", suffix: "um_per_n", si: UM },
+        Unit { symbol: "1/N", suffix: "per_n", si: 1.0 },
+        Unit { symbol: "µm/K", suffix: "um_per_k", si: UM },
+        Unit { symbol: "µm/h", suffix: "um_per_h", si: UM / HOUR },
+        Unit { symbol: "µrad/K", suffix: "urad_per_k", si: URAD },
+        Unit { symbol: "µrad/h", suffix: "urad_per_h", si: URAD / HOUR },
+        Unit { symbol: "1/K", suffix: "per_k", si: 1.0 },
+        Unit { symbol: "rad", suffix: "rad", si: 1.0 },
+        Unit { symbol: "µrad", suffix: "urad", si: URAD },
+        Unit { symbol: "°", suffix: "deg", si: DEG },
+        Unit { symbol: "µm", suffix: "um", si: UM },
+        Unit { symbol: "mm", suffix: "mm", si: MM },
+        Unit { symbol: "m", suffix: "m", si: 1.0 },
+        Unit { symbol: "%", suffix: "percent", si: 0.01 },
+        Unit { symbol: "kg", suffix: "kg", si: 1.0 },
+        Unit { symbol: "g", suffix: "g", si: GRAM },
+        Unit { symbol: "N·m", suffix: "nm", si: 1.0 },
+        Unit { symbol: "N", suffix: "n", si: 1.0 },
+        Unit { symbol: "s", suffix: "s", si: 1.0 },
+        Unit { symbol: "K", suffix: "k", si: 1.0 },
+        Unit { symbol: "Hz", suffix: "hz", si: 1.0 },
+    ];
+
+    /// The unit that a key ends with: of `play_um` the micrometre, of `um` too.
+    ///
+    /// ```
+    /// use rodcal_base::units::Unit;
+    ///
+    /// assert_eq!(Unit::of_key("bending_urad_per_nm").symbol, "µrad/(N·m)");
+    /// assert_eq!(Unit::of_key("play_um").si, 1e-6);
+    /// assert_eq!(Unit::of_key("factor"), Unit::NONE);
+    /// ```
+    pub fn of_key(key: &str) -> Unit {
+        let ends = |unit: &&Unit| {
+            key.strip_suffix(unit.suffix).is_some_and(|rest| rest.is_empty() || rest.ends_with('_'))
+        };
+        Unit::ALL.iter().filter(ends).max_by_key(|unit| unit.suffix.len()).copied().unwrap_or(Unit::NONE)
+    }
+
+    /// The same unit for numbers that are kept as they stand in a file, not in SI.
+    pub fn as_written(self) -> Unit {
+        Unit { si: 1.0, ..self }
+    }
+}
 
 /// Shows a number with `digits` significant digits, without an exponent where a reader would not
 /// expect one.

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Campaign, Group, ParameterConstraints, Recording, Refit, Row, Station, Targets};
+use super::{Campaign, Group, GroupName, ParameterConstraints, Recording, Refit, Row, Station, Targets};
 use crate::error::{Error, Result};
 use crate::rig::readings::Readings;
 use crate::robot::Robot;
@@ -63,7 +63,7 @@ impl Campaign {
             base_is_given: false,
             clamps: match &measurements.targets {
                 Targets::Points(_) => {
-                    measurements.groups.iter().filter(|group| !group.name.is_empty()).cloned().collect()
+                    measurements.groups.iter().filter(|group| !group.name.is_tracked()).cloned().collect()
                 }
                 Targets::Sockets(_) => Vec::new(),
             },
@@ -73,7 +73,7 @@ impl Campaign {
             noise: None,
             clamp_uncertainty: None,
             accuracy: None,
-            wishes: ParameterConstraints::default(),
+            constraints: ParameterConstraints::default(),
             warnings: Vec::new(),
         })
     }
@@ -137,7 +137,7 @@ impl Campaign {
 
     /// With parameters that are fixed, free, or known beforehand.
     pub fn with_constraints(self, constraints: ParameterConstraints) -> Campaign {
-        Campaign { wishes: constraints, ..self }
+        Campaign { constraints, ..self }
     }
 }
 
@@ -189,7 +189,7 @@ impl Recording {
     /// [`Error::Argument`] for another number of joint values than the recording has, for a value
     /// that is not finite, and for a recording of sockets, whose points are unknown.
     pub fn add(&mut self, joints: &[f64], point: Vector3<f64>) -> Result<()> {
-        self.push(String::new(), &Pose::IDENTITY, joints, point)
+        self.push(GroupName::Tracked, &Pose::IDENTITY, joints, point)
     }
 
     /// Adds a pose that was measured in a clamp: `device` is the clamp's frame in {W}, `position`
@@ -204,12 +204,12 @@ impl Recording {
         joints: &[f64],
         position: Vector3<f64>,
     ) -> Result<()> {
-        self.push(format!("clamp {id}"), device, joints, position)
+        self.push(GroupName::Clamp(id.to_owned()), device, joints, position)
     }
 
-    fn push(&mut self, group: String, device: &Pose, joints: &[f64], position: Vector3<f64>) -> Result<()> {
-        let wrong = |name, found: String, expected: &str| {
-            Err(Error::Argument { name, found, expected: expected.to_owned() })
+    fn push(&mut self, name: GroupName, device: &Pose, joints: &[f64], position: Vector3<f64>) -> Result<()> {
+        let wrong = |argument, found: String, expected: &str| {
+            Err(Error::Argument { name: argument, found, expected: expected.to_owned() })
         };
         if joints.len() != self.joint_count {
             let expected = format!("{} joint values", self.joint_count);
@@ -219,16 +219,16 @@ impl Recording {
         if let Some(number) = numbers.chain(device.rotation.iter()).find(|number| !number.is_finite()) {
             return wrong("pose", number.to_string(), "finite numbers");
         }
-        let known = self.groups.iter().position(|known| known.name == group);
+        let known = self.groups.iter().position(|known| known.name == name);
         if known.is_some_and(|index| self.groups[index].device != *device) {
-            return wrong("device", format!("another frame of {group}"), "one frame for each clamp");
+            return wrong("device", format!("another frame of {name}"), "one frame for each clamp");
         }
         let Targets::Points(points) = &mut self.targets else {
             return wrong("recording", "one of sockets".into(), "one of measured points");
         };
         points.push(device.point(&position));
         let index = known.unwrap_or_else(|| {
-            self.groups.push(Group { name: group, device: *device });
+            self.groups.push(Group::new(name, *device));
             self.groups.len() - 1
         });
         self.joint_values.extend_from_slice(joints);

@@ -51,8 +51,7 @@ pub(super) fn about(campaign: &Campaign, clamps: &[Clamp]) -> Vec<Warning> {
     let Campaign { rod, contact_force, measurements, validation, .. } = campaign;
     let mut warnings = Vec::new();
     for clamp in clamps {
-        let name = format!("clamp {}", clamp.id);
-        if measurements.groups.iter().all(|group| group.name != name) {
+        if measurements.groups.iter().all(|group| group.name != clamp.group().name) {
             warnings.push(Warning::UnusedClamp { id: clamp.id.clone() });
         }
     }
@@ -137,5 +136,5 @@ fn not_independent(measurements: &Recording, validation: &Recording) -> Option<W
     let mut same =
         (0..validation.len()).filter(|&row| known.contains(&rounded(validation.joints(row)))).peekable();
     let pose = validation.rows[*same.peek()?].pose.clone();
-    Some(Warning::NotIndependent { count: same.count(), total: validation.len(), pose })
+    Some(Warning::NotIndependent { count: same.count(), rows: validation.len(), pose })
 }

@@ -154,7 +154,7 @@ impl Reader<'_> {
         }
 
         let (robot, robot_file) = self.robot(raw)?;
-        let wishes = parameter_constraints(self.toml, &raw.parameters, &raw.prior, robot.joints.len())?;
+        let constraints = parameter_constraints(self.toml, &raw.parameters, &raw.prior, robot.joints.len())?;
         let rod = match &raw.rod {
             Some(name) => Some(self.named("rod", name).and_then(|n| Rod::from_toml(&n.file, &n.text))?),
             None => None,
@@ -212,7 +212,7 @@ impl Reader<'_> {
             noise,
             clamp_uncertainty,
             accuracy,
-            wishes,
+            constraints,
             warnings: Vec::new(),
         };
         let guess = Pose::from_xyz_rpy(
@@ -357,7 +357,7 @@ impl Reader<'_> {
 
     fn three(&self, key: &str, list: &Spanned<Vec<Number>>, what: Triple) -> Result<Vector3<f64>> {
         let [x, y, z] = list.get_ref().as_slice() else {
-            return Err(self.toml.is(key, list, what.words));
+            return Err(self.toml.is(key, list, what.expected));
         };
         let number = |number| Ok(self.toml.finite(key, number)? * what.unit);
         Ok(Vector3::new(number(x)?, number(y)?, number(z)?))
@@ -372,10 +372,10 @@ fn is_missing(opened: Result<String>) -> bool {
 /// Three numbers of one unit.
 #[derive(Clone, Copy)]
 struct Triple {
-    words: &'static str,
+    expected: &'static str,
     unit: f64,
 }
 
-const POSITION: Triple = Triple { words: "three numbers [x, y, z] in mm", unit: MM };
-const ANGLES: Triple = Triple { words: "three angles [roll, pitch, yaw] in degrees", unit: DEG };
-const FORCE: Triple = Triple { words: "three numbers [x, y, z] in N, the force on the ball", unit: 1.0 };
+const POSITION: Triple = Triple { expected: "three numbers [x, y, z] in mm", unit: MM };
+const ANGLES: Triple = Triple { expected: "three angles [roll, pitch, yaw] in degrees", unit: DEG };
+const FORCE: Triple = Triple { expected: "three numbers [x, y, z] in N, the force on the ball", unit: 1.0 };

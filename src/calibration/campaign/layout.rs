@@ -1,7 +1,7 @@
 //! Where the ball was held, as the campaign file has it: it decides which columns its recordings
 //! have.
 
-use super::Group;
+use super::{Group, GroupName};
 use crate::spatial::Pose;
 
 /// Where the ball was, as the campaign file has it.
@@ -24,7 +24,7 @@ pub(super) struct Clamp {
 impl Clamp {
     /// As a recording has it.
     pub fn group(&self) -> Group {
-        Group { name: format!("clamp {}", self.id), device: self.device }
+        Group::new(GroupName::Clamp(self.id.clone()), self.device)
     }
 }
 

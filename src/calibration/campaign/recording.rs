@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::columns::{Columns, POSITION, STATION, listed, required};
 use super::layout::{Clamp, Role, Seen, Sockets};
-use super::{Distance, Group, Recording, Row, Station, Targets, Warning, checks};
+use super::{Distance, Group, GroupName, Recording, Row, Station, Targets, Warning, checks};
 use crate::delimited::{Row as Cells, Table, comments_above};
 use crate::error::{Error, Place, Result};
 use crate::robot::Robot;
@@ -48,7 +48,7 @@ pub(super) fn read(
             joint_values.push(value?);
         }
         if !matches!(seen, Seen::Sockets(_)) {
-            points.push(reader.groups[row.group].group.device.point(&position(cells)?));
+            points.push(reader.groups[row.group].device.point(&position(cells)?));
         }
         rows.push(row);
     }
@@ -69,7 +69,7 @@ pub(super) fn read(
         joint_values,
         joints_read: None,
         rows,
-        groups: reader.groups.into_iter().map(|named| named.group).collect(),
+        groups: reader.groups,
         stations: reader.stations.iter().map(|name| Station::first(name)).collect(),
         targets,
     };
@@ -85,17 +85,12 @@ struct Reader<'a> {
     seen: Seen<'a>,
     has_stations: bool,
     /// In order of appearance.
-    groups: Vec<NamedGroup>,
-    /// Their names, in order of appearance; one of name "" without the column.
+    groups: Vec<Group>,
+    /// Names of where tracker or base stood, in order of appearance; one of name "" without the
+    /// column.
     stations: Vec<String>,
     /// Line of each group's poses.
     lines: BTreeMap<(usize, String), usize>,
-}
-
-/// A group with the cells that name it: clamp and nothing, placement and socket, or nothing at all.
-struct NamedGroup {
-    names: [String; 2],
-    group: Group,
 }
 
 impl Reader<'_> {
@@ -105,8 +100,8 @@ impl Reader<'_> {
         let station = self.station(cells)?;
         let group = self.group(cells, station)?;
         if let Some(line) = self.lines.insert((group, pose.clone()), cells.line()) {
-            let whose = match self.groups[group].group.name.as_str() {
-                "" => String::new(),
+            let whose = match &self.groups[group].name {
+                GroupName::Tracked => String::new(),
                 name => format!(" of {name}"),
             };
             let expected = format!("a pose{whose} that is not in line {line} already");
@@ -152,13 +147,9 @@ impl Reader<'_> {
     }
 
     fn group(&mut self, cells: Cells<'_>, station: usize) -> Result<usize> {
-        let (names, label, device) = match self.seen {
-            Seen::World => ([String::new(), String::new()], String::new(), Pose::IDENTITY),
-            Seen::Clamps(clamps) => {
-                let clamp = known_clamp(cells, clamps)?;
-                let Group { name, device } = clamp.group();
-                ([clamp.id.clone(), String::new()], name, device)
-            }
+        let group = match self.seen {
+            Seen::World => Group::tracked(),
+            Seen::Clamps(clamps) => known_clamp(cells, clamps)?.group(),
             Seen::Sockets(_) => {
                 let placement = name(cells, "placement", "a name for where the sockets stood")?;
                 let socket = name(cells, "socket", "the number of the socket")?;
@@ -167,15 +158,13 @@ impl Reader<'_> {
                     0 => placement.to_owned(),
                     _ => format!("{placement}, station {}", self.stations[station]),
                 };
-                let label = format!("{placement}/{socket}");
-                ([placement, socket.to_owned()], label, Pose::IDENTITY)
+                Group::new(GroupName::socket(placement, socket), Pose::IDENTITY)
             }
         };
-        if let Some(index) = self.groups.iter().position(|named| named.names == names) {
+        if let Some(index) = self.groups.iter().position(|known| known.name == group.name) {
             return Ok(index);
         }
-        let group = Group { name: label, device };
-        self.groups.push(NamedGroup { names, group });
+        self.groups.push(group);
         Ok(self.groups.len() - 1)
     }
 }
@@ -202,11 +191,14 @@ fn position(cells: Cells<'_>) -> Result<Vector3<f64>> {
 }
 
 /// Between the sockets 0 and 1 of each placement that has both.
-fn distances(groups: &[NamedGroup], Sockets { distance, sd }: Sockets) -> Vec<Distance> {
-    let socket = |placement: &str, socket: &str| {
-        groups.iter().position(|named| named.names[0] == placement && named.names[1] == socket)
+fn distances(groups: &[Group], Sockets { distance, sd }: Sockets) -> Vec<Distance> {
+    let other_of = |name: &GroupName| match name {
+        GroupName::Socket { placement, socket } if socket == "0" => {
+            let other = GroupName::socket(placement, "1");
+            groups.iter().position(|group| group.name == other)
+        }
+        _ => None,
     };
-    let firsts = groups.iter().enumerate().filter(|(_, named)| named.names[1] == "0");
-    let pairs = firsts.filter_map(|(first, named)| Some([first, socket(&named.names[0], "1")?]));
+    let pairs = groups.iter().enumerate().filter_map(|(first, own)| Some([first, other_of(&own.name)?]));
     pairs.map(|between| Distance { between, value: distance, sd }).collect()
 }

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::{Distance, Group, Recording, Targets};
+use super::{Distance, Group, GroupName, Recording, Targets};
 
 impl Recording {
-    /// Gives the sockets of the rows that `is_moved` names new ones, as whose place nobody knows:
-    /// `front/0` becomes `front from row 42/0`. Distances within a plate that moved as a whole
-    /// (`keeps_distances`) stay known.
+    /// Makes the sockets of the rows that `is_moved` names others, whose place nobody knows: socket
+    /// 0 of `front` becomes socket 0 of `front from row 42`. Distances within a plate that moved as
+    /// a whole (`keeps_distances`) stay known.
     pub fn rename_groups(&mut self, is_moved: &dyn Fn(usize) -> bool, from: &str, keeps_distances: bool) {
         let mut renamed: BTreeMap<usize, usize> = BTreeMap::new();
         for row in 0..self.rows.len() {
@@ -22,10 +22,13 @@ impl Recording {
                 renamed.contains_key(&own) || self.rows.iter().enumerate().any(|pair| stays(&pair));
             let new = *renamed.entry(own).or_insert(if is_split { next } else { own });
             if new == next {
-                let (placement, socket) =
-                    self.groups[own].name.rsplit_once('/').unwrap_or((&self.groups[own].name, "0"));
-                let name = format!("{placement} from {from}/{socket}");
-                self.groups.push(Group { name, device: self.groups[own].device });
+                let later = |name: &str| format!("{name} from {from}");
+                let name = match &self.groups[own].name {
+                    GroupName::Socket { placement, socket } => GroupName::socket(later(placement), socket),
+                    GroupName::Clamp(id) => GroupName::Clamp(later(id)),
+                    GroupName::Tracked => GroupName::Tracked,
+                };
+                self.groups.push(Group::new(name, self.groups[own].device));
             }
             self.rows[row].group = new;
         }
@@ -54,7 +57,8 @@ mod tests {
     /// Eight rows in turn in the two sockets of a plate.
     fn plate() -> Recording {
         let mut recording = Recording::new(1);
-        let group = |k: usize| Group { name: format!("front/{k}"), device: crate::spatial::Pose::IDENTITY };
+        let group =
+            |k: usize| Group::new(GroupName::socket("front", k.to_string()), crate::spatial::Pose::IDENTITY);
         recording.groups = vec![group(0), group(1)];
         recording.stations = vec![Station::first("")];
         recording.joint_values = (0..8).map(f64::from).collect();
@@ -71,8 +75,8 @@ mod tests {
         recording
     }
 
-    fn names(recording: &Recording) -> Vec<&str> {
-        recording.rows.iter().map(|row| recording.groups[row.group].name.as_str()).collect()
+    fn names(recording: &Recording) -> Vec<String> {
+        recording.rows.iter().map(|row| recording.groups[row.group].name.to_string()).collect()
     }
 
     fn known(recording: &Recording) -> Vec<[usize; 2]> {

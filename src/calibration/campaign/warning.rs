@@ -77,7 +77,7 @@ pub enum Warning {
         /// How many.
         count: usize,
         /// Of how many.
-        total: usize,
+        rows: usize,
         /// The first one.
         pose: String,
     },
@@ -166,9 +166,9 @@ impl fmt::Display for Warning {
                 measured / MM,
                 nominal / MM
             ),
-            Warning::NotIndependent { count, total, pose } => write!(
+            Warning::NotIndependent { count, rows, pose } => write!(
                 f,
-                "{count} of {total} validation poses are measurement poses too (pose {pose} first): \
+                "{count} of {rows} validation poses are measurement poses too (pose {pose} first): \
                  the validation is not independent"
             ),
             Warning::UnusedClamp { id } => write!(f, "no row was measured in clamp {id}"),

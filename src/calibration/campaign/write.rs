@@ -4,15 +4,15 @@ use std::fmt::Write as _;
 
 use nalgebra::Vector3;
 
-use super::{Campaign, Recording, Refit, Targets};
+use super::{Campaign, Group, GroupName, Recording, Refit, Targets};
 use crate::delimited::cell;
 use crate::robot::{Motion, Robot};
-use crate::spatial::Pose;
 use crate::toml_text::comments;
 use crate::units::{DEG, MM, UM};
 
 /// Names of the files that a written campaign refers to.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct FileNames {
     /// The robot's.
     pub robot: String,
@@ -26,6 +26,14 @@ pub struct FileNames {
     pub measurements: String,
     /// The validation's, where there is one.
     pub validation: Option<String>,
+}
+
+impl FileNames {
+    /// Of a robot and its measurements; the other files are fields to be filled in.
+    pub fn new(robot: impl Into<String>, measurements: impl Into<String>) -> FileNames {
+        let (robot, measurements) = (robot.into(), measurements.into());
+        FileNames { robot, effects: None, rod: None, rig: None, measurements, validation: None }
+    }
 }
 
 impl Campaign {
@@ -75,20 +83,15 @@ impl Campaign {
 
     /// Clamps or sockets.
     fn groups(&self) -> String {
-        let clamp = |(name, device): (&str, &Pose)| {
+        let clamp = |Group { name, device }: &Group| {
+            let GroupName::Clamp(id) = name else { return String::new() };
             let [roll, pitch, yaw] = device.roll_pitch_yaw();
             let rpy = Vector3::new(roll, pitch, yaw);
-            let (id, xyz, rpy) = (quoted(name), three(&device.origin, MM), three(&rpy, DEG));
+            let (id, xyz, rpy) = (quoted(id), three(&device.origin, MM), three(&rpy, DEG));
             format!("\n[[clamp]]\nid = {id}\nxyz_mm = {xyz}\nrpy_deg = {rpy}\n")
         };
         match &self.measurements.targets {
-            Targets::Points(_) => {
-                let groups = self.measurements.groups.iter();
-                groups
-                    .filter_map(|group| Some((group.name.strip_prefix("clamp ")?, &group.device)))
-                    .map(clamp)
-                    .collect()
-            }
+            Targets::Points(_) => self.measurements.groups.iter().map(clamp).collect(),
             Targets::Sockets(distances) => match distances.first() {
                 Some(known) => format!(
                     "\n[sockets]\ndistance_mm = {}\ndistance_sd_mm = {}\n",
@@ -102,7 +105,7 @@ impl Campaign {
     }
 
     fn constraints(&self) -> String {
-        let constraints = &self.wishes;
+        let constraints = &self.constraints;
         let mut text = String::new();
         let list = |parameters: &[crate::robot::Parameter]| {
             let keys: Vec<String> = parameters.iter().map(|parameter| quoted(&parameter.key())).collect();
@@ -130,7 +133,7 @@ impl Recording {
     /// clamp's frame and at its own station, as it was measured.
     pub fn to_csv(&self, robot: &Robot, above: &[String]) -> String {
         let mut text: String = above.iter().map(|line| format!("# {line}\n")).collect();
-        let has_clamps = self.groups.iter().any(|group| group.name.starts_with("clamp "));
+        let has_clamps = self.groups.iter().any(|group| !group.name.is_tracked());
         let has_points = matches!(self.targets, Targets::Points(_));
         let has_stations = self.stations.iter().any(|station| !station.name.is_empty());
         let has_time = self.rows.iter().any(|row| row.time.is_some());
@@ -156,14 +159,11 @@ impl Recording {
         text += &(columns.join(",") + "\n");
         for (row, entry) in self.rows.iter().enumerate() {
             let mut cells = vec![entry.pose.clone()];
-            let group = self.groups[entry.group].name.as_str();
-            match (has_points, has_clamps) {
-                (true, true) => cells.push(group.trim_start_matches("clamp ").to_owned()),
-                (true, false) => {}
-                (false, _) => {
-                    let (placement, socket) = group.rsplit_once('/').unwrap_or((group, "0"));
-                    cells.extend([placement.to_owned(), socket.to_owned()]);
-                }
+            match &self.groups[entry.group].name {
+                GroupName::Tracked if has_clamps => cells.push(String::new()),
+                GroupName::Tracked => {}
+                GroupName::Clamp(id) => cells.push(id.clone()),
+                GroupName::Socket { placement, socket } => cells.extend([placement.clone(), socket.clone()]),
             }
             cells.extend(
                 self.read_joints(row)

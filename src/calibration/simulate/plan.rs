@@ -4,6 +4,7 @@ use crate::units::{DEG, MM, UM};
 
 /// What is simulated. The defaults are the paper's experiment.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Plan {
     /// Every random number comes from it.
     pub seed: u64,
@@ -31,6 +32,7 @@ pub struct Plan {
 
 /// Standard deviations of the differences between the true and the nominal robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct RobotErrors {
     /// Of d and a, m.
     pub length: f64,
@@ -56,6 +58,28 @@ impl Default for Plan {
             scanner_noise: 43.0 * UM,
             clamp_error: 0.0,
         }
+    }
+}
+
+impl Plan {
+    /// The paper's experiment with so many poses on every clamp, and so many of the validation.
+    pub fn of_poses(per_clamp: usize, validation: usize) -> Plan {
+        Plan { poses_per_clamp: per_clamp, validation_poses: validation, ..Plan::default() }
+    }
+
+    /// With all random numbers from this seed.
+    pub fn with_seed(self, seed: u64) -> Plan {
+        Plan { seed, ..self }
+    }
+
+    /// With a true rod that is so many times as compliant as its model.
+    pub fn with_rod_factor(self, rod_factor: f64) -> Plan {
+        Plan { rod_factor, ..self }
+    }
+
+    /// With clamps that stand so far from where the campaign has them, m (root mean square).
+    pub fn with_clamp_error(self, clamp_error: f64) -> Plan {
+        Plan { clamp_error, ..self }
     }
 }
 

@@ -57,7 +57,7 @@ impl CaseFiles {
             // what asks is no rod of the laboratory's
             others.rods.retain(|(file, _)| !file.starts_with("asked"));
             let mended = calibration::mend(&campaign, default_mode(&campaign), &others, &options)?;
-            let found = mended.diagnose(&options)?;
+            let found = mended.diagnose()?;
             let asked = self.has("asked.toml").then(|| self.campaign("asked.toml")).transpose()?;
             let predicted = asked.and_then(|asked| found.predicted(&asked).ok());
             let coordinates =

@@ -8,7 +8,6 @@ use crate::error::{Error, Result};
 use crate::linalg::thin_svd;
 use crate::robot::postures::{anywhere, is_above_table};
 use crate::robot::{Kinematics, Parameter, Setup};
-use crate::spatial::Pose;
 use crate::statistics::Random;
 use crate::units::{MM, significant};
 
@@ -122,7 +121,7 @@ impl Unseen {
             }
             (Where::Validation, None) => format!("{} poses all over the workspace", poses.len()),
         };
-        let place = [Group { name: String::new(), device: Pose::IDENTITY }];
+        let place = [Group::tracked()];
         let poses: Vec<(usize, Vec<f64>)> = poses.into_iter().map(|q| (0, q)).collect();
         let planned = Planned::new(there, free, &Compensation::bare(), &place, false, &poses);
         let stacked = |blocks: Vec<nalgebra::Matrix3xX<f64>>| {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::limits::{Obstacle, Surroundings};
 use crate::calibration::NEAR;
+use crate::calibration::campaign::GroupName;
 use crate::delimited::Table;
 use crate::error::{Error, Place, Result};
 use crate::parallel::in_parallel;
@@ -188,9 +189,9 @@ fn posture(
 
 /// Why no posture was found for a place, and how much is missing.
 fn why_not(around: &Surroundings, place: usize, tally: &Tally) -> String {
-    let name = match around.places[place].name.as_str() {
-        "" => "a pose",
-        name => name,
+    let name = match &around.places[place].name {
+        GroupName::Tracked => "a pose".to_owned(),
+        name => name.to_string(),
     };
     let reached = tally.tried - tally.refused[Obstacle::Far as usize];
     if reached == 0 {
@@ -232,10 +233,11 @@ fn from_table(around: &Surroundings, file: &str, text: &str) -> Result<Candidate
         let q = query.joints;
         kinematics.update(&q, &[]);
         let left = |place: usize| (around.places[place].device.origin - kinematics.tip).norm();
-        let named = cells.text("clamp").filter(|_| around.are_fixed).map(|id| format!("clamp {id}"));
+        let named =
+            cells.text("clamp").filter(|_| around.are_fixed).map(|id| GroupName::Clamp(id.to_owned()));
         let place = match named {
             Some(name) => around.places.iter().position(|place| place.name == name).ok_or_else(|| {
-                let names: Vec<&str> = around.places.iter().map(|place| place.name.as_str()).collect();
+                let names: Vec<String> = around.places.iter().map(|place| place.name.to_string()).collect();
                 cells.error("clamp", format!("one of the campaign's places: {}", names.join(", ")), None)
             })?,
             None => (0..around.places.len()).min_by(|&a, &b| left(a).total_cmp(&left(b))).unwrap_or(0),

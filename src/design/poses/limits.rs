@@ -114,7 +114,7 @@ impl<'a> Surroundings<'a> {
             let force = campaign.contact_force.map(|force| place.device.rotation * force);
             force.and_then(|force| force.try_normalize(0.0)).unwrap_or(up)
         };
-        let are_fixed = places.iter().any(|place| !place.name.is_empty());
+        let are_fixed = places.iter().any(|place| !place.name.is_tracked());
         let lowest = places.iter().map(|place| place.device.origin.z).fold(setup.base_position.z, f64::min);
         let rod = match &campaign.rod {
             Some(rod) => {

@@ -7,7 +7,7 @@ use super::criterion::PoseCriterion;
 use super::limits::{PoseLimits, Surroundings};
 use super::order;
 use super::random::{Beside, beside};
-use crate::calibration::campaign::{Campaign, Group};
+use crate::calibration::campaign::{Campaign, Group, GroupName};
 use crate::calibration::{
     Compensation, Mode, Observability, Planned, default_mode, free_parameters, places, planned_setup,
 };
@@ -231,9 +231,9 @@ fn quotas(count: usize, places: &[Group], candidates: &Candidates) -> Result<Vec
     let quotas: Vec<usize> = (0..places.len()).map(|place| share + usize::from(place < more)).collect();
     let lacks = quotas.iter().enumerate().filter_map(|(place, &quota)| {
         let there = candidates.poses.iter().filter(|(own, _)| *own == place).count();
-        let name = match places[place].name.as_str() {
-            "" => "the robot",
-            name => name,
+        let name = match &places[place].name {
+            GroupName::Tracked => "the robot".to_owned(),
+            name => name.to_string(),
         };
         (there < quota).then(|| format!("{name} has {there} candidates for {quota} poses"))
     });

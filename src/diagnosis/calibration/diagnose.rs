@@ -1,32 +1,40 @@
 //! What a campaign says about its calibration.
 
-use super::beside::{calibrated_beside, unequal};
+pub mod beside;
+pub mod forward_model;
+pub mod limits;
+pub mod memory;
+pub mod prepared;
+pub mod tails;
+
+use self::beside::{calibrated_beside, unequal};
+use self::limits::{limits, noisy};
+use self::memory::check_memory;
+use self::prepared::{FirstLook, Prepared};
 use super::effects::{EVERY_ROW, registry};
-use super::gear::Curve;
-use super::limits::{limits, noisy};
-use super::memory::check_memory;
+use super::laws::sites::sites;
 use super::model::CalibrationModel;
+use super::model::gear::Curve;
 use super::next::next_measurements;
-use super::prepared::{FirstLook, Prepared};
-use super::sites::sites;
-use super::tails;
+use super::write_back::destination::destination;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Mode, Options, calibrate};
 use crate::diagnosis::{Diagnosed, Limitation};
 use crate::error::Result;
 use crate::inference::law::propose;
 use crate::inference::{
-    Discrepancy, Finding, Hypothesis, Location, ShownBy, Sketch, Term, diagnose as infer, sketch,
+    Discrepancy, Estimate, Finding, Hypothesis, Location, ShownBy, Sketch, Term, diagnose as infer, sketch,
 };
 
 /// A campaign's diagnosis.
 pub type CalibrationDiagnosis<'c> = Diagnosed<CalibrationModel<'c>>;
 
-/// Calibrates `campaign` and diagnoses what is left.
+/// Calibrates `campaign` as it was recorded and diagnoses what is left: for one that is known to be
+/// free of mistakes, such as a simulated one. Of any other [`mend`](super::mend) undoes them first.
 ///
 /// # Errors
 /// As [`calibrate`].
-pub fn diagnose<'c>(
+pub fn diagnose_as_recorded<'c>(
     campaign: &'c Campaign,
     mode: Mode,
     options: &Options,
@@ -34,7 +42,8 @@ pub fn diagnose<'c>(
     diagnose_calibrated(campaign, calibrate(campaign, mode, options)?)
 }
 
-/// Diagnoses what a calibration of `campaign` leaves.
+/// Diagnoses what a finished calibration of `campaign` leaves. Mistakes in the files are not looked
+/// for: of a campaign that may hold some [`mend`](super::mend) undoes them first.
 ///
 /// ```
 /// use rodcal::diagnosis::calibration::diagnose_calibrated;
@@ -94,7 +103,24 @@ pub fn diagnose_calibrated<'c>(
         found.diagnosis.discrepancy =
             Some(Discrepancy { candidate: None, location: None, shown_by: ShownBy::Size, rms, shape });
     }
+    complete(&mut found);
     Ok(found)
+}
+
+/// What only the whole diagnosis knows of a finding: where it is written, and the whole error of a
+/// gear.
+fn complete(found: &mut CalibrationDiagnosis) {
+    let wholes: Vec<Vec<Estimate>> =
+        found.diagnosis.findings.iter().map(|finding| found.whole_error(finding)).collect();
+    let CalibrationDiagnosis { model, diagnosis, .. } = found;
+    for (finding, whole) in diagnosis.findings.iter_mut().zip(wholes) {
+        finding.written_to = destination(finding, model);
+        finding.estimates.extend(whole);
+        for part in &mut finding.parts {
+            let Some(gear) = model.gear_of(part) else { continue };
+            part.estimates.extend(gear.frequencies(part, &model.angles(gear.joint())));
+        }
+    }
 }
 
 /// Rows, from 0, after which something has moved, where not every row was looked at.
@@ -113,13 +139,14 @@ const ROUNDS: usize = 2;
 
 /// Something that happened while the poses were recorded.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Happened {
     /// The first row, from 0, that it changed.
     pub row: usize,
     /// True for what moved before that row and stayed there; false for a single pose.
     pub stays: bool,
     /// For example `clamp 2 moved`, `pose 7`.
-    pub words: String,
+    pub label: String,
 }
 
 impl CalibrationDiagnosis<'_> {
@@ -156,6 +183,15 @@ impl CalibrationDiagnosis<'_> {
         (!parts.is_empty()).then(|| Curve::new(joint, parts, covariance, &angles))
     }
 
+    /// The size of the whole error of the gear that a finding is about; nothing of any other.
+    fn whole_error(&self, finding: &Finding) -> Vec<Estimate> {
+        let Some((joint, part)) = self.gear_joint(finding).zip(finding.parts.first()) else {
+            return Vec::new();
+        };
+        let angles = self.model.angles(joint);
+        self.gear(joint).map_or_else(Vec::new, |curve| curve.estimates(&angles, part.coverage_factor))
+    }
+
     /// The joint, from 0, whose gear a finding is about.
     pub fn gear_joint(&self, finding: &Finding) -> Option<usize> {
         self.model.gear_of(finding.parts.first()?).map(|gear| gear.joint())
@@ -166,10 +202,10 @@ impl CalibrationDiagnosis<'_> {
         let mut happened = Vec::new();
         for part in self.diagnosis.findings.iter().flat_map(|finding| &finding.parts) {
             let effect = self.model.terms.candidates[part.term.candidate].effect;
-            let words = registry::record(effect).and_then(|effect| (effect.event)(&part.location));
+            let label = registry::record(effect).and_then(|effect| (effect.event)(&part.location));
             let row = self.model.first_row(&part.term);
             let stays = part.location.moved_after().is_some();
-            happened.extend(row.zip(words).map(|(row, words)| Happened { row, stays, words }));
+            happened.extend(row.zip(label).map(|(row, label)| Happened { row, stays, label }));
         }
         happened
     }

@@ -18,6 +18,7 @@ pub(super) mod gear;
 pub(super) mod joints;
 pub(super) mod loads;
 pub(super) mod mistakes;
+pub(super) mod mounting;
 mod per_torque;
 pub(super) mod play;
 pub(super) mod procedure;
@@ -25,10 +26,9 @@ pub mod registry;
 
 use nalgebra::Vector3;
 
-use super::context::Context;
-use super::entry::{Column, Entry, linear};
-use super::law::Law;
-use super::model::CalibrationModel;
+use super::model::entry::{Column, Entry, linear};
+use super::model::law::Law;
+use super::model::{CalibrationModel, Context};
 use crate::calibration::campaign::{Campaign, Targets};
 use crate::inference::{
     Candidate, Effect, Estimate, Finding, FindingPart, JointVariable, Location, NotTestable, Parameter,
@@ -100,7 +100,7 @@ fn joint(joint: usize) -> Location {
     Location::Joint { joint, form: None }
 }
 
-/// A joint, from 0, that errs by one of several laws.
+/// A joint, from 0, with an error by one of several laws.
 fn joint_by(joint: usize, form: impl Into<String>) -> Location {
     Location::Joint { joint, form: Some(form.into()) }
 }
@@ -116,13 +116,8 @@ fn unit(axis: usize) -> Vector3<f64> {
 }
 
 /// Three parameters of one size.
-fn three(
-    names: &[&str; 3],
-    unit: f64,
-    size: f64,
-    column: impl Fn(usize) -> Column,
-) -> Vec<(Parameter, Column)> {
-    let parameter = |(axis, name): (usize, &&str)| (linear(*name, unit, size), column(axis));
+fn three(names: &[&str; 3], size: f64, column: impl Fn(usize) -> Column) -> Vec<(Parameter, Column)> {
+    let parameter = |(axis, name): (usize, &&str)| (linear(*name, size), column(axis));
     names.iter().enumerate().map(parameter).collect()
 }
 
@@ -186,7 +181,7 @@ fn first(finding: &Finding) -> Quantity {
 /// A vector's length over the first three values of a finding's strongest part, in `unit`.
 fn size(finding: &Finding, unit: f64) -> Quantity {
     let nothing = Quantity { value: f64::NAN, low: f64::NAN, high: f64::NAN };
-    finding.parts.first().map_or(nothing, |part| super::vector::size(part, unit))
+    finding.parts.first().map_or(nothing, |part| super::model::vector::size(part, unit))
 }
 
 /// A place at the beginning of a sentence.

@@ -21,13 +21,13 @@
 //!
 //! so that what is known counts the same whatever noise a hypothesis leaves.
 
+mod nominal;
+
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::configuration::Configuration;
-use super::context::Context;
-use super::nominal;
+use super::model::{Configuration, Context};
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Calibration, MOST_SCATTER};
 use crate::inference::{Covariate, Evidence, JointVariable, Variable};
@@ -237,25 +237,8 @@ fn folds(recording: &Recording, replicate_groups: &[usize]) -> Vec<usize> {
 
 /// For each row the number of its clamp, or of its sockets' placement.
 fn sessions(recording: &Recording) -> Vec<usize> {
-    let names = session_names(recording);
-    let number = |name: &str| names.iter().position(|known| *known == name).unwrap_or_default();
-    recording.rows.iter().map(|row| number(session_name(&recording.groups[row.group].name))).collect()
-}
-
-/// Names of all sessions, by number.
-pub(super) fn session_names(recording: &Recording) -> Vec<&str> {
-    let mut known: Vec<&str> = Vec::new();
-    for name in recording.groups.iter().map(|group| session_name(&group.name)) {
-        if !known.contains(&name) {
-            known.push(name);
-        }
-    }
-    known
-}
-
-/// `front` of the socket `front/0`; a clamp's own name.
-fn session_name(group: &str) -> &str {
-    group.rsplit_once('/').map_or(group, |(placement, _)| placement)
+    let session = recording.session_by_group();
+    recording.rows.iter().map(|row| session[row.group]).collect()
 }
 
 /// Coordinates of a socket have an intercept of their own: nobody knows where it is.

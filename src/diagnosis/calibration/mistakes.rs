@@ -16,38 +16,31 @@
 //! altogether (the zero of the first joint without a stated base) is not named.
 
 mod columns;
-mod displaced;
 mod distance;
 mod draft;
-mod elsewhere;
-mod fixtures;
 mod found;
-mod left_to_effects;
 mod motion;
 mod moves;
 mod names;
-mod part;
-mod partial;
 mod quick;
-mod relabelled;
 mod search;
 mod slips;
 #[cfg(test)]
 mod tests;
 mod typed;
-mod undo;
 
+use self::columns::Silent;
 use self::draft::Draft;
 use self::motion::measure_moves;
 use self::moves::Other;
-use self::quick::Body;
-use self::search::{Found, Search, State, Step};
-use super::apply::{Applied, apply};
+use self::quick::LoadedRobot;
+use self::search::{AdoptedStep, FittedDraft, MistakeSearch, SearchStep};
 use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
+use super::write_back::apply::{Applied, apply};
 use crate::calibration::campaign::{Campaign, FileNames};
 use crate::calibration::{Compensation, Mode, Options, Summary, calibrate};
 use crate::error::Result;
-use crate::inference::{Finding, Location};
+use crate::inference::Finding;
 use crate::robot::Robot;
 use crate::rod::Rod;
 
@@ -60,6 +53,7 @@ const CONFIRMED: f64 = 0.5;
 
 /// Files of the same folders that may have been meant.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Neighbours {
     /// Rods, by their files.
     pub rods: Vec<(String, Rod)>,
@@ -69,15 +63,17 @@ pub struct Neighbours {
 
 /// A mistake that a campaign seems to hold, in one line.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Suspicion {
     /// `likely mistake in q4_deg: its sign is wrong; multiply q4_deg by −1 (…)`.
-    pub words: String,
+    pub description: String,
     /// False for a first guess of base or tip, which a calibration corrects.
     pub spoils_fit: bool,
 }
 
 /// A campaign without the mistakes that were found in it.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Mended {
     /// The campaign that was meant.
     pub campaign: Campaign,
@@ -91,14 +87,16 @@ pub struct Mended {
     pub is_changed: bool,
     /// False where columns hold no information, so that physics cannot be seen.
     pub has_data: bool,
+    /// How it is calibrated.
+    options: Options,
     /// Errors of a calibration on what was recorded; `None` where nothing was found.
     recorded: Option<Summary>,
 }
 
-/// Looks for mistakes in a campaign and undoes them.
+/// Looks for mistakes in a campaign and undoes them: the first step of every diagnosis, of which
+/// [`Mended::diagnose`] is the second.
 ///
 /// ```
-/// use rodcal::diagnosis::calibration::{Neighbours, mend};
 /// use rodcal::prelude::*;
 ///
 /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
@@ -111,18 +109,22 @@ pub struct Mended {
 /// assert_eq!(mended.found[0].effect.name, "sign_mistake");
 /// assert_eq!(mended.found[0].location.to_string(), "q4_deg");
 /// assert_eq!(mended.campaign.measurements.joint_values, campaign.measurements.joint_values);
+/// // with it undone the robot is calibrated, and nothing else is wrong
+/// let found = mended.diagnose()?;
+/// assert_eq!(found.diagnosis.findings.len(), 1);
+/// assert!((found.diagnosis.noise - 18e-6).abs() < 4e-6, "{}", found.diagnosis.noise);
 /// # Ok::<(), rodcal::Error>(())
 /// ```
 ///
 /// # Errors
 /// What [`Compensation::new`] refuses; what a calibration refuses.
 pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Options) -> Result<Mended> {
-    let mut mended = search(campaign, mode, others)?;
+    let mut mended = search(campaign, mode, others, options)?;
     if !mended.found.is_empty() {
         let recorded = calibrate(campaign, mode, options).ok();
         mended.recorded = recorded.map(|calibration| Summary::of(&calibration.residuals()));
     }
-    Ok(mended.confirmed(campaign, mode, options))
+    Ok(mended.confirmed(campaign, mode))
 }
 
 /// One line for each mistake that `campaign` seems to hold, for those who do not ask for a
@@ -131,18 +133,18 @@ pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Opti
 /// # Errors
 /// As [`mend`].
 pub fn suspected(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Vec<Suspicion>> {
-    let mut mended = search(campaign, mode, others)?;
     let options = Options::default();
+    let mut mended = search(campaign, mode, others, &options)?;
     if mended.is_changed {
         let recorded = calibrate(campaign, mode, &options).ok();
         mended.recorded = recorded.map(|calibration| Summary::of(&calibration.residuals()));
     }
-    Ok(mended.confirmed(campaign, mode, &options).suspicions)
+    Ok(mended.confirmed(campaign, mode).suspicions)
 }
 
 impl Mended {
     /// A campaign as it was recorded.
-    fn unchanged(campaign: &Campaign, mode: Mode) -> Mended {
+    fn unchanged(campaign: &Campaign, mode: Mode, options: &Options) -> Mended {
         Mended {
             campaign: campaign.clone(),
             mode,
@@ -150,27 +152,30 @@ impl Mended {
             suspicions: Vec::new(),
             is_changed: false,
             has_data: true,
+            options: *options,
             recorded: None,
         }
     }
 
     /// The same, or the campaign as recorded where a calibration shows that what was undone is not
     /// what was wrong: it still fails, and leaves about as much.
-    fn confirmed(self, campaign: &Campaign, mode: Mode, options: &Options) -> Mended {
+    fn confirmed(self, campaign: &Campaign, mode: Mode) -> Mended {
         let (true, Some(recorded)) = (self.is_changed, self.recorded) else { return self };
-        let Ok(meant) = calibrate(&self.campaign, self.mode, options) else { return self };
+        let Ok(meant) = calibrate(&self.campaign, self.mode, &self.options) else { return self };
         let left = Summary::of(&meant.residuals());
         let is_better = left.rms < CONFIRMED * recorded.rms && left.mean < recorded.mean;
-        if meant.is_plausible() || is_better { self } else { Mended::unchanged(campaign, mode) }
+        let is_confirmed = meant.is_plausible() || is_better;
+        if is_confirmed { self } else { Mended::unchanged(campaign, mode, &self.options) }
     }
 
-    /// Calibrates the mended campaign and diagnoses what is left; the mistakes stand before all
-    /// else.
+    /// Calibrates the campaign that was meant and diagnoses what is left, as
+    /// `rodcal diagnose calibration` does; the mistakes stand before all else.
     ///
     /// # Errors
-    /// As [`super::diagnose()`].
-    pub fn diagnose(&self, options: &Options) -> Result<CalibrationDiagnosis<'_>> {
-        let mut found = diagnose_calibrated(&self.campaign, calibrate(&self.campaign, self.mode, options)?)?;
+    /// As [`calibrate`] and [`diagnose_calibrated`].
+    pub fn diagnose(&self) -> Result<CalibrationDiagnosis<'_>> {
+        let calibration = calibrate(&self.campaign, self.mode, &self.options)?;
+        let mut found = diagnose_calibrated(&self.campaign, calibration)?;
         let has_failed = found.is_implausible();
         let diagnosis = &mut found.diagnosis;
         if has_failed || !self.has_data {
@@ -196,7 +201,7 @@ impl Mended {
     /// nothing could be written.
     ///
     /// # Errors
-    /// As [`super::apply()`].
+    /// As [`super::write_back::apply()`].
     pub fn apply(&self, found: &CalibrationDiagnosis, names: &FileNames) -> Result<Option<Applied>> {
         let undone: Vec<String> =
             self.found.iter().map(|finding| finding.description.observed.clone()).collect();
@@ -228,11 +233,11 @@ impl Mended {
     }
 }
 
-fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended> {
-    let mut mended = Mended::unchanged(campaign, mode);
+fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Options) -> Result<Mended> {
+    let mut mended = Mended::unchanged(campaign, mode, options);
     let draft = Draft::of(campaign);
     let compensation = Compensation::new(campaign, mode)?;
-    let mut bodies = vec![Body::new(&campaign.robot, compensation.clone(), campaign.tool, &draft)];
+    let mut bodies = vec![LoadedRobot::new(&campaign.robot, compensation.clone(), campaign.tool, &draft)];
     let mut meant = Vec::new();
     for (file, rod) in &others.rods {
         let with = Campaign { rod: Some(rod.clone()), readings: None, ..campaign.clone() };
@@ -241,13 +246,13 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
         let tip = (!campaign.tool_is_given).then(|| rod.tip());
         let body = bodies.len();
         meant.push(Other { file: file.clone(), name: rod.name.clone(), is_rod: true, tip, body });
-        bodies.push(Body::new(&campaign.robot, compensation, tip.unwrap_or(campaign.tool), &draft));
+        bodies.push(LoadedRobot::new(&campaign.robot, compensation, tip.unwrap_or(campaign.tool), &draft));
     }
     let is_alike = |robot: &&(String, Robot, String)| robot.1.joints.len() == campaign.robot.joints.len();
     for (file, robot, _) in others.robots.iter().filter(is_alike) {
         let (name, body) = (robot.name.clone(), bodies.len());
         meant.push(Other { file: file.clone(), name, is_rod: false, tip: None, body });
-        bodies.push(Body::new(robot, compensation.clone(), campaign.tool, &draft));
+        bodies.push(LoadedRobot::new(robot, compensation.clone(), campaign.tool, &draft));
     }
     let mut forces = Vec::new();
     for factor in moves::bodies::forces(campaign) {
@@ -258,9 +263,9 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
     let moves = moves::all(campaign, &draft, &meant, &forces);
     let of_rows = moves::of_rows::of_rows(campaign, &draft);
-    let mut search = Search { draft, bodies, moves, of_rows, guess_weight: 1.0 };
+    let mut search = MistakeSearch { draft, bodies, moves, of_rows, guess_weight: 1.0 };
     let mut result = if is_sure { None } else { search.found() };
-    let is_rough = |(_, best, _): &(State, State, Vec<Found>)| {
+    let is_rough = |(_, best, _): &(FittedDraft, FittedDraft, Vec<AdoptedStep>)| {
         best.steps.is_empty() && !search.has_failed(best) && search.is_rough_guess(best)
     };
     if result.as_ref().is_some_and(is_rough)
@@ -272,20 +277,15 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Mended
     let has_failed = result.as_ref().is_none_or(|(_, best, _)| search.has_failed(best));
     for silent in silent.into_iter().filter(|silent| has_failed || !silent.only_if_failed) {
         mended.has_data = false;
-        mended.add(
-            silent.effect,
-            Location::key(silent.location),
-            silent.estimates,
-            &silent.cure,
-            &silent.why,
-        );
+        let Silent { effect, location, estimates, cure, why, log_odds, .. } = silent;
+        mended.add(effect, location.into(), estimates, (&cure, &why), log_odds);
     }
     let Some((_, mut best, found)) = result.filter(|_| mended.has_data) else { return Ok(mended) };
     for found in &found {
         mended.add_found(&search, &best, found);
     }
     for slip in search.slips(&best, &campaign.measurements) {
-        best.steps.push(Step::Slip(slip.change.clone()));
+        best.steps.push(SearchStep::Slip(slip.change.clone()));
         mended.add_slip(slip);
     }
     if !best.steps.is_empty() {

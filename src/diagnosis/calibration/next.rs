@@ -10,13 +10,14 @@
 //! both ways round. Of all feasible poses those are proposed that leave least of the rivals
 //! ([`ExperimentDesign`]). What can be weighed or gauged needs no poses.
 
-use super::context::Context;
+pub mod feasible_poses;
+pub mod unfollowed;
+
+use self::feasible_poses::{FeasiblePoses, feasible};
+use self::unfollowed::Unfollowed;
 use super::effects::registry;
 use super::evidence;
-use super::feasible_poses::{FeasiblePoses, feasible};
-use super::linear_terms::LinearTerms;
-use super::model::CalibrationModel;
-use super::unfollowed::Unfollowed;
+use super::model::{CalibrationModel, Context, LinearTerms};
 use crate::error::Result;
 use crate::inference::{
     Candidate, Diagnosis, Effect, Evidence, ExperimentDesign, Finding, Location, Plan, Proposal, Rival, Term,
@@ -136,9 +137,9 @@ fn apart(finding: &Finding) -> Vec<&Rival> {
 /// Poses to measure, by what they gain against each rival.
 fn proposal(poses: FeasiblePoses, gained: &[f64], rivals: &[&Rival]) -> Proposal {
     let separated = || gained.iter().zip(rivals).filter(|(gained, _)| separates(**gained));
-    let FeasiblePoses { words, plan } = poses;
+    let FeasiblePoses { instruction, plan } = poses;
     Proposal {
-        words,
+        words: instruction,
         plan: Some(Plan::Poses(plan)),
         log_odds: separated().map(|(gained, _)| *gained).fold(f64::INFINITY, f64::min),
         separates_from: separated().map(|(_, rival)| place(rival)).collect(),

@@ -32,11 +32,10 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix3, Vector3};
 
 use self::curve::{SIDES, SIZE, TURN, angle_of, cosine, curve, scaled};
-use super::context::Context;
-use super::entry::{Column, Entry, linear};
-use super::law::Frame;
+use super::model::Context;
+use super::model::entry::{Column, Entry, linear};
+use super::model::law::Frame;
 use crate::inference::{Parameter, Variable};
-use crate::units::{UM, URAD};
 
 /// Cosines along one number, beside the constant.
 const MOST: usize = 6;
@@ -64,17 +63,17 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
         (Variable::Time, "the time", known(&|row| rows[row].time)),
         (Variable::Temperature, "the temperature", known(&|row| rows[row].temperature)),
     ];
-    for (variable, words, values) in clocks {
+    for (variable, name, values) in clocks {
         let label = variable.to_string();
-        let curve = |values: Vec<f64>| along(context, variable, &label, words, &values, Frame::World);
+        let curve = |values: Vec<f64>| along(context, variable, &label, name, &values, Frame::World);
         entries.extend(values.and_then(curve));
     }
     for j in 0..context.joint_count() {
         let values: Vec<f64> = context.configurations.iter().map(|there| there.joints[j]).collect();
         let label = format!("joint {}", j + 1);
-        let words = format!("the angle of {label}");
+        let angle = format!("the angle of {label}");
         for frame in [Frame::World, Frame::Tool] {
-            entries.extend(along(context, angle_of(j), &label, &words, &values, frame));
+            entries.extend(along(context, angle_of(j), &label, &angle, &values, frame));
         }
     }
     entries.extend(again_and_again(context));
@@ -115,7 +114,7 @@ fn vectors(
             Frame::World => &context.patterns.world[axis],
         };
         let column = context.along(pattern, |row, _| weight(row));
-        (linear(format!("{letter}_{name}_um"), UM, size), column)
+        (linear(format!("{letter}_{name}_um"), size), column)
     };
     AXES.iter().enumerate().map(along).collect()
 }
@@ -124,7 +123,7 @@ fn along(
     context: &Context,
     variable: Variable,
     label: &str,
-    words: &str,
+    name: &str,
     values: &[f64],
     frame: Frame,
 ) -> Option<Entry> {
@@ -137,7 +136,7 @@ fn along(
         Frame::World => (format!("{label}, a curve in the world"), "fixed directions"),
         Frame::Tool => (format!("{label}, a curve in the tool"), "directions that turn with the tool"),
     };
-    let follows = format!("follows {words}, along {directions}");
+    let follows = format!("follows {name}, along {directions}");
     Some(curve(label, follows, Some(variable), parameters.collect()))
 }
 
@@ -210,7 +209,7 @@ fn from_a_side(context: &Context, side: &[f64; 3]) -> Entry {
             let held = configuration.flange.rotation.tr_mul(&line(row));
             line(row) * factors.iter().map(|&k| held[k]).product::<f64>()
         });
-        (linear(format!("{}_um", name_of(&factors)), UM, size), column)
+        (linear(format!("{}_um", name_of(&factors)), size), column)
     });
     let [x, y, z] = side.into();
     let label = format!("orientation, from the side ({x:.1} {y:.1} {z:.1})");
@@ -241,7 +240,7 @@ fn by_whole_orientation(context: &Context) -> Entry {
     let mut add = |name: String, size: f64, weight: &dyn Fn(&Matrix3<f64>) -> f64| {
         for (axis, letter) in AXES.iter().enumerate() {
             let column = context.column(|row, _| device(row).column(axis) * weight(&held[row]));
-            parameters.push((linear(format!("{letter}_{name}_um"), UM, size), column));
+            parameters.push((linear(format!("{letter}_{name}_um"), size), column));
         }
     };
     for (i, j) in (0..9).map(|k| (k / 3, k % 3)) {
@@ -269,7 +268,7 @@ fn reversal(context: &Context, j: usize, way: Way, sign: &dyn Fn(usize) -> f64) 
     let parameters = (0..=MOST_OF_REVERSAL).map(|k| {
         let column = context.turn(j, |row, _| sign(row) * cosine(k, x[row]));
         let name = format!("reversed_cosine_{k}_urad");
-        (linear(name, URAD, TURN / (1 + k) as f64), column)
+        (linear(name, TURN / (1 + k) as f64), column)
     });
     let joint = format!("joint {}", j + 1);
     let (form, either) = match way {
@@ -303,7 +302,7 @@ fn links(context: &Context) -> Vec<Entry> {
                         let pattern = &context.patterns.link[link][axis];
                         let column = context.along(pattern, |row, _| cosine(k, x[row]) * cosine(l, y[row]));
                         let name = format!("about_{}_cosines_{k}{l}_urad", AXES[axis]);
-                        (linear(name, URAD, TURN / (1 + k + l) as f64), column)
+                        (linear(name, TURN / (1 + k + l) as f64), column)
                     })
                 });
                 let link = format!("link {}", link + 1);
@@ -330,7 +329,7 @@ fn pairs(context: &Context) -> Vec<Entry> {
                 orders.map(move |(k, l)| {
                     let column = context.turn(turned, |row, _| cosine(k, x[row]) * cosine(l, y[row]));
                     let name = format!("joint_{}_cosines_{k}{l}_urad", turned + 1);
-                    (linear(name, URAD, TURN / (1 + k + l) as f64), column)
+                    (linear(name, TURN / (1 + k + l) as f64), column)
                 })
             });
             let joints = format!("joint {} and joint {}", i + 1, j + 1);

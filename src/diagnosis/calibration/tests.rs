@@ -20,11 +20,10 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use nalgebra::{DVector, Vector3};
 
-use super::context::Context;
+use super::diagnose::prepared::Prepared;
 use super::effects::registry;
-use super::entry::Entry;
-use super::linear_terms::LinearTerms;
-use super::prepared::Prepared;
+use super::model::entry::Entry;
+use super::model::{Context, LinearTerms};
 use super::*;
 use crate::calibration::Calibration;
 use crate::calibration::Campaign;

@@ -10,11 +10,11 @@
 
 use nalgebra::{DVector, Vector3};
 
-use super::context::Context;
 use super::diagnose::CalibrationDiagnosis;
 use super::effects::{Transfer, registry};
-use super::entry::Entry;
-use super::law::Law;
+use super::model::Context;
+use super::model::entry::Entry;
+use super::model::law::Law;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Compensation, Options, calibrate_from};
 use crate::error::{Error, Result};

@@ -1,12 +1,19 @@
 //! From readings to findings: mistakes first, then the physics of what is left.
 
+mod another_rod;
+mod as_measured;
+mod limits;
+
 use super::effects::mistakes::UNIT_MISTAKE;
 use super::effects::structure::STIFFNESS_SCALE;
+use super::laws::sites;
+use super::measurements::next;
+use super::mistakes;
 use super::mistakes::Mended;
+use super::model::wanted::Wanted;
 use super::model::{AsRecorded, RigDiagnosis, RigModel};
 use super::own_effect::OwnEffect;
-use super::wanted::Wanted;
-use super::{another_rod, as_measured, correction, limits, mistakes, next, sites};
+use super::write_back::as_found;
 use crate::diagnosis::Diagnosed;
 use crate::error::{Error, Place, Result};
 use crate::inference::law::propose;
@@ -96,7 +103,7 @@ pub fn diagnose_with(
             others.clear();
         }
     }
-    // a rod that yields much more than its file bends much farther, which may change what was found
+    // a rod that is much softer than its file bends much farther, which may change what was found
     let mut bent = model.rod.clone();
     for _ in 0..MOST_BENT {
         let Some(found) = bends_farther(&model, bent.as_ref(), &diagnosis)? else { break };
@@ -145,7 +152,7 @@ pub fn diagnose_with(
 /// readings show.
 fn bends_farther(model: &RigModel, bent: Option<&Rod>, diagnosis: &Diagnosis) -> Result<Option<Rod>> {
     let (Some(rod), Some(bent)) = (model.rod(), bent) else { return Ok(None) };
-    let found = correction::as_found(model, rod, &diagnosis.findings);
+    let found = as_found(model, rod, &diagnosis.findings);
     if found == *bent {
         return Ok(None);
     }

@@ -15,7 +15,7 @@ pub(super) mod events;
 pub(super) mod history;
 pub(super) mod load;
 pub mod mistakes;
-mod places;
+pub(super) mod places;
 pub mod registry;
 pub(super) mod sensor;
 pub(super) mod structure;

@@ -1,19 +1,28 @@
 //! Readings of a rig as the engine sees them: data, what turns forces into displacements,
 //! candidates.
 
-use super::action::Action;
-use super::cases::Cases;
-use super::datum::Datum;
+mod build;
+mod cases;
+mod derivative;
+mod first_sight;
+mod forward_model;
+pub(super) mod nominal;
+mod response;
+pub(super) mod transfer;
+pub(super) mod wanted;
+mod widened;
+
+use self::cases::Cases;
+use self::nominal::KnownNumber;
+use super::mechanics::action::Action;
+use super::mechanics::slide::Course;
+use super::mechanics::structure::Structure;
 use super::own_effect::OwnEffect;
-use super::slide::Course;
-use super::structure::Structure;
+use super::recording::datum::Datum;
 use crate::diagnosis::Diagnosed;
 use crate::inference::Candidate;
 use crate::rig::readings::Readings;
-use crate::rod::Rod;
-
-/// The parameter of a joint that may be anywhere.
-pub(super) const STATION: &str = "station_mm";
+use crate::rod::{Rod, RodLaw};
 
 /// A rig's diagnosis.
 pub type RigDiagnosis = Diagnosed<RigModel>;
@@ -28,6 +37,8 @@ pub struct RigModel {
     /// What the rod as it bends would show, without the rig's effects, m: what the columns of the
     /// nominal numbers are shares of.
     pub(super) bent: Vec<f64>,
+    /// What each of the nominal numbers is.
+    pub(super) known_numbers: Vec<KnownNumber>,
     pub(super) body: Body,
     /// For each datum the pair of stations (with a rod) or the line (without).
     pub(super) place: Vec<usize>,
@@ -40,8 +51,8 @@ pub struct RigModel {
     pub(super) actions: Vec<Vec<Action>>,
     /// What laws of the rod's file add to each datum as predicted, m; nothing without any.
     pub(super) law_adds: Vec<f64>,
-    /// Laws of the rod's file that the readings have no data for, in words.
-    pub(super) unused_laws: Vec<String>,
+    /// Laws of the rod's file that the readings have no data for.
+    pub(super) unused_laws: Vec<RodLaw>,
     /// Effects that the lab describes itself.
     pub(super) own: Vec<OwnEffect>,
 }
@@ -96,9 +107,8 @@ impl RigModel {
         self.as_recorded.as_ref().map_or(self.rod.as_ref(), |given| given.rod.as_ref())
     }
 
-    /// Laws of the rod's file that are not used, because the readings have no data for them, in
-    /// words.
-    pub fn unused_laws(&self) -> &[String] {
+    /// Laws of the rod's file that are not used, because the readings have no data for them.
+    pub fn unused_laws(&self) -> &[RodLaw] {
         &self.unused_laws
     }
 

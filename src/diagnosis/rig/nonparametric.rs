@@ -14,7 +14,7 @@
 //! that acts on all lines alike, such as relaxation with one time constant or a seat that gives
 //! way, is one rival and not many.
 //!
-//! What yields along the rod more here than there is a curve over its stations ([`station`]).
+//! What is softer along the rod here than there is a curve over its stations ([`station`]).
 //!
 //! What sets in at a load, or acts one way, has rivals of one number ([`kink`]). What comes and
 //! goes in time has finer curves besides, of [`FINE`] columns of which the first
@@ -22,6 +22,7 @@
 
 mod along;
 mod before;
+mod cycles;
 mod kink;
 mod station;
 mod swing;
@@ -29,21 +30,17 @@ mod swing;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use std::collections::HashMap;
-
-use nalgebra::{DMatrix, DVector};
-
 use self::along::*;
 pub(super) use self::before::Before;
-use super::action::{Action, Weights};
-use super::datum::Datum;
-use super::effects::entry::Entry;
-use super::load_history::runs;
+use self::cycles::Cycles;
+use super::effects::entry::{Entry, UNBOUNDED, parameter};
+use super::mechanics::action::{Action, Weights};
+use super::mechanics::load_history::runs;
 use super::model::Body;
 use super::numbering::numbered;
-use crate::inference::{Candidate, Location, Parameter, Variable};
+use super::recording::datum::Datum;
+use crate::inference::{Location, Variable};
 use crate::spatial::Axis;
-use crate::units::UM;
 
 /// Columns of a curve in time that swings: six periods in a recording.
 const FINE: usize = 14;
@@ -53,7 +50,7 @@ const MOST_LEVELS: usize = 30;
 /// flat one may have: as large as the known effects on a rod.
 const SLOPE: (f64, f64) = (0.27, 0.02);
 
-/// All curves for these readings. `deflections`: how far the rod yields at each datum by the base
+/// All curves for these readings. `deflections`: how far the rod deflects at each datum by the base
 /// model, m.
 pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[usize])) -> Vec<Entry> {
     let everything: Vec<usize> = (0..data.len()).collect();
@@ -63,26 +60,32 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
     let channels = groups(data, &numbered(data.iter().map(|d| d.channel)), &|d| format!("d{}", d.channel));
     let clock = if data.iter().any(|d| d.time.is_some()) { Variable::Time } else { Variable::Order };
     let mut entries = Vec::new();
+    let cycles = Cycles::of(data, deflections);
     for (along, coordinate, is_of_line) in coordinates(data) {
-        entries.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, PERCENT, SHARE, |i| {
+        let mut curves: Vec<Entry> = Vec::new();
+        curves.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, "percent", SHARE, |i| {
             deflections[i]
         }));
         if along.variable == clock && !is_of_line {
-            entries.extend(swing::all(along, &coordinate, data));
+            curves.extend(swing::all(along, &coordinate, data));
         }
         for (place, group) in if is_of_line { &lines } else { &channels } {
             let largest = group.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
             let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
-            entries.extend(curve(along, place, &coordinate, group, UM, size, |_| 1.0));
+            curves.extend(curve(along, place, &coordinate, group, "um", size, |_| 1.0));
             if along.variable == clock && !is_of_line {
-                entries.extend(fine(along, place, &coordinate, group, size));
+                curves.extend(fine(along, place, &coordinate, group, size));
             }
         }
+        if let Some(cycles) = cycles.as_ref().filter(|_| along.is_recording) {
+            curves.retain(|(candidate, actions)| cycles.are_predicted(candidate, actions));
+        }
+        entries.extend(curves);
     }
     let before = Before::of(data);
     if let Some(waits) = before.waits() {
         let changes = before.changes(data, deflections);
-        entries.extend(curve(SINCE_CHANGE, CHANGES, &scaled(&waits), &everything, PERCENT, SHARE, |i| {
+        entries.extend(curve(SINCE_CHANGE, CHANGES, &scaled(&waits), &everything, "percent", SHARE, |i| {
             changes[i]
         }));
     }
@@ -92,7 +95,7 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
             ALL_DEFLECTIONS,
             &scaled(&loads),
             &everything,
-            PERCENT,
+            "percent",
             SHARE,
             |i| deflections[i],
         ));
@@ -152,78 +155,28 @@ fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
     found
 }
 
-/// Rank of the load, as `of` counts it, among those along its axis, for the data that `is_of`
-/// admits. Of more than [`MOST_LEVELS`] loads the size instead: where a measured load trembles
-/// about its levels, its rank is a better load.
-fn by_axis(data: &[Datum], of: impl Fn(&Datum) -> f64, is_of: impl Fn(&Datum) -> bool) -> Coordinate {
+/// Rank of the load among those along its axis, for the data that are wanted. Of more than
+/// [`MOST_LEVELS`] loads the size instead: where a measured load trembles about its levels, its
+/// rank is a better load.
+fn by_axis(data: &[Datum], load: impl Fn(&Datum) -> f64, is_wanted: impl Fn(&Datum) -> bool) -> Coordinate {
     let levels = Axis::ALL.map(|axis| {
-        let along = data.iter().filter(|d| is_of(d) && d.direction.axis == axis);
-        let mut levels: Vec<f64> = along.map(&of).collect();
+        let along = data.iter().filter(|d| is_wanted(d) && d.direction.axis == axis);
+        let mut levels: Vec<f64> = along.map(&load).collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup();
         levels
     });
     let rank = |datum: &Datum| {
-        is_of(datum).then_some(())?;
+        is_wanted(datum).then_some(())?;
         let levels = &levels[datum.direction.axis.index()];
         if levels.len() > MOST_LEVELS {
             let (least, most) = (levels[0], levels[levels.len() - 1]);
-            return Some((of(datum) - least) / (most - least));
+            return Some((load(datum) - least) / (most - least));
         }
-        let rank = levels.partition_point(|&level| level < of(datum));
+        let rank = levels.partition_point(|&level| level < load(datum));
         Some((rank as f64 + 0.5) / levels.len() as f64)
     };
     data.iter().map(rank).collect()
-}
-
-/// Takes away, of a load that goes up and down again and again, curves along the recording that do
-/// not predict the next cycle: a curve through neighbours follows anything that a law repeats.
-///
-/// Each cycle in turn is predicted from the others, by the curve with its prior; a curve stays if
-/// it lowers the squares.
-pub(super) fn retain_predictive(entries: &mut Vec<Entry>, data: &[Datum], deflections: &[f64]) {
-    let is_cyclic = data.iter().any(|d| d.motion.is_some_and(|motion| motion.cycle > 0));
-    if !is_cyclic {
-        return;
-    }
-    let cycle = numbered(data.iter().map(|d| (d.run, d.motion.map(|motion| motion.cycle))));
-    let left = DVector::from_iterator(data.len(), data.iter().zip(deflections).map(|(d, u)| d.measured - u));
-    let is_along_recording = |candidate: &Candidate| {
-        matches!(&candidate.location, Location::Curve { label, .. }
-            if [POSITION, ORDER, TIME].iter().any(|along| label.starts_with(&format!("{}, ", along.name))))
-    };
-    entries.retain(|(candidate, actions)| {
-        !is_along_recording(candidate) || predicts(candidate, actions, &left, &cycle)
-    });
-}
-
-/// True where a curve that is fitted to all other cycles lowers the squares of each cycle, all of
-/// them together.
-fn predicts(candidate: &Candidate, actions: &[Action], left: &DVector<f64>, cycle: &[usize]) -> bool {
-    let mut columns = DMatrix::zeros(left.len(), actions.len());
-    for (k, (action, parameter)) in actions.iter().zip(&candidate.parameters).enumerate() {
-        let Action::Shift(weights) = action else { continue };
-        weights.iter().for_each(|(i, weight)| columns[(i, k)] = weight * parameter.size);
-    }
-    let mut rows: HashMap<usize, Vec<usize>> = HashMap::new();
-    for (i, &cycle) in cycle.iter().enumerate() {
-        rows.entry(cycle).or_default().push(i);
-    }
-    let all = (columns.tr_mul(&columns), columns.tr_mul(left));
-    let noise = left.norm_squared() / left.len().max(1) as f64;
-    let (mut before, mut after) = (0.0, 0.0);
-    let mut numbers: Vec<&usize> = rows.keys().collect();
-    numbers.sort_unstable();
-    for number in numbers {
-        let of_cycle = &rows[number];
-        let (own, own_left) = (columns.select_rows(of_cycle), left.select_rows(of_cycle));
-        let gram = &all.0 - own.tr_mul(&own) + DMatrix::identity(actions.len(), actions.len()) * noise;
-        let Some(root) = gram.cholesky() else { return false };
-        let values = root.solve(&(&all.1 - own.tr_mul(&own_left)));
-        before += own_left.norm_squared();
-        after += (own_left - own * values).norm_squared();
-    }
-    after < before
 }
 
 /// From 0 to 1; nothing where the values do not differ.
@@ -242,12 +195,19 @@ fn curve(
     place: &str,
     coordinate: &Coordinate,
     group: &[usize],
-    unit: f64,
+    suffix: &str,
     size: f64,
     amplitude: impl Fn(usize) -> f64,
 ) -> Option<Entry> {
     let sizes: Vec<f64> = (0..MOST_COLUMNS).map(|j| size / (1 + j) as f64).collect();
-    cosines(&format!("{}, {place}", along.name), (along, place), (coordinate, group), unit, &sizes, amplitude)
+    cosines(
+        &format!("{}, {place}", along.name),
+        (along, place),
+        (coordinate, group),
+        suffix,
+        &sizes,
+        amplitude,
+    )
 }
 
 /// A curve in time that swings; nothing where too few times are known to see that.
@@ -257,7 +217,7 @@ fn fine(along: Along, place: &str, coordinate: &Coordinate, group: &[usize], siz
     let even = (FINE / 2) as f64;
     let sizes: Vec<f64> = (0..FINE).map(|j| size / (1.0 + j as f64 / even).powi(2)).collect();
     let label = format!("{}, in swings, {place}", along.name);
-    cosines(&label, (along, place), (coordinate, group), UM, &sizes, |_| 1.0)
+    cosines(&label, (along, place), (coordinate, group), "um", &sizes, |_| 1.0)
 }
 
 /// Σ_j a_j·cos(π j x), a_j of these sizes; of fewer values than columns as many columns.
@@ -265,23 +225,16 @@ fn cosines(
     label: &str,
     (along, place): (Along, &str),
     (coordinate, group): (&Coordinate, &[usize]),
-    unit: f64,
+    suffix: &str,
     sizes: &[f64],
     amplitude: impl Fn(usize) -> f64,
 ) -> Option<Entry> {
     let known: Vec<(usize, f64)> = group.iter().filter_map(|&i| Some((i, coordinate[i]?))).collect();
     let different = numbered(known.iter().map(|(_, x)| x.to_bits())).into_iter().max()? + 1;
     let own: Arc<[usize]> = known.iter().map(|(i, _)| *i).collect();
-    let suffix = if unit == PERCENT { "percent" } else { "um" };
     let (parameters, actions) = (0..different.min(sizes.len()))
         .map(|j| {
-            let parameter = Parameter {
-                name: format!("cosine_{j}_{suffix}"),
-                unit,
-                neutral: 0.0,
-                size: sizes[j],
-                bounds: (f64::NEG_INFINITY, f64::INFINITY),
-            };
+            let parameter = parameter(&format!("cosine_{j}_{suffix}"), 0.0, sizes[j], UNBOUNDED);
             let weight = |&(i, x): &(usize, f64)| amplitude(i) * (PI * j as f64 * x).cos();
             let values = known.iter().map(weight).collect();
             (parameter, Action::Shift(Weights { data: Arc::clone(&own), values }))
@@ -306,7 +259,9 @@ fn along_the_load(data: &[Datum]) -> Option<Entry> {
     let largest = along.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
     let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
     let sign = |i: usize| if data[i].drive() < 0.0 { -1.0 } else { 1.0 };
-    (axes > 1).then(|| curve(LOAD, "readings along the load", &coordinate, &along, UM, size, sign)).flatten()
+    (axes > 1)
+        .then(|| curve(LOAD, "readings along the load", &coordinate, &along, "um", size, sign))
+        .flatten()
 }
 
 /// A slope of its own for every line: a rod whose compliance differs from the model in a way that
@@ -317,13 +272,7 @@ fn slopes(data: &[Datum], deflections: &[f64], lines: &[(String, Vec<usize>)]) -
     let steepest = (0..data.len()).map(|i| slope(&i)).fold(0.0, f64::max);
     let of_line = |(place, line): &(String, Vec<usize>)| {
         let size = SLOPE.0 * line.iter().map(slope).fold(0.0, f64::max) + SLOPE.1 * steepest;
-        let parameter = Parameter {
-            name: format!("{place}_um_per_n"),
-            unit: UM,
-            neutral: 0.0,
-            size,
-            bounds: (f64::NEG_INFINITY, f64::INFINITY),
-        };
+        let parameter = parameter(&format!("{place}_um_per_n"), 0.0, size, UNBOUNDED);
         (parameter, Action::Shift(line.iter().map(|&i| (i, data[i].drive())).collect()))
     };
     let (parameters, actions) = lines.iter().map(of_line).unzip();
@@ -358,7 +307,7 @@ fn places(datum: &Datum) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::rig::datum;
+    use crate::diagnosis::rig::recording::datum;
     use crate::rig::readings::Readings;
 
     fn along(text: &str) -> Option<Entry> {
@@ -366,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn what_yields_along_the_load_does_so_wherever_that_pulls() {
+    fn what_gives_way_along_the_load_does_so_wherever_that_pulls() {
         let (candidate, actions) =
             along("axis,load_n,dy_um,dz_um\n-y,0,0,0\n-y,5,-9,1\n-y,10,-18,2\nz,10,3,30\n").unwrap();
         assert_eq!(candidate.location.to_string(), "load, readings along the load");

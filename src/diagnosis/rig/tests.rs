@@ -131,7 +131,7 @@ fn neutral_values_change_nothing_and_typical_ones_something() {
             let change = model.response(&[Term { candidate: index, values }]);
             assert!(change.amax() > 0.0 && change.iter().all(|c| c.is_finite()), "{candidate:?}");
             for p in &candidate.parameters {
-                assert!(p.size > 0.0 && p.size.is_finite() && p.unit > 0.0, "{candidate:?}");
+                assert!(p.size > 0.0 && p.size.is_finite() && p.unit.si > 0.0, "{candidate:?}");
                 assert!(p.bounds.0 <= p.neutral && p.neutral + p.size <= p.bounds.1, "{candidate:?}");
             }
         }
@@ -228,9 +228,9 @@ fn a_step_at_one_load_and_a_bend_in_the_line_are_within_the_unknown() {
         })
         .collect();
     let basis = DMatrix::from_columns(&columns);
-    let is_of = |d: &Datum| d.direction.axis == Axis::Z && d.channel == Axis::Z;
+    let is_wanted = |d: &Datum| d.direction.axis == Axis::Z && d.channel == Axis::Z;
     for shape in [|load: f64| f64::from(u8::from(load >= 10.0)), |load: f64| (load - 10.0).max(0.0)] {
-        let values = model.data().iter().map(|d| if is_of(d) { shape(d.load) } else { 0.0 });
+        let values = model.data().iter().map(|d| if is_wanted(d) { shape(d.load) } else { 0.0 });
         let target = DVector::from_iterator(model.data().len(), values);
         let fit = crate::linalg::least_squares(&basis, &target).unwrap();
         assert!((&basis * fit - target).amax() < 1e-12);

@@ -25,7 +25,7 @@ fn recording(count: usize) -> Recording {
     let steps: Vec<Step> = sequences.iter().flat_map(steps_of).collect();
     let parameter = Parameter {
         name: "size".into(),
-        unit: 1.0,
+        unit: crate::units::Unit::NONE,
         neutral: 0.0,
         size: 3.0,
         bounds: (f64::NEG_INFINITY, f64::INFINITY),

@@ -13,6 +13,7 @@ use crate::inference::search::selection::{DiscrepancyModel, Pairs};
 use crate::inference::{Evidence, ForwardModel};
 
 /// The first model with its recording, which others are compared with.
+#[non_exhaustive]
 pub struct Compared {
     /// Of shared and own errors, as the best hypothesis leaves them.
     ratio: f64,

@@ -15,6 +15,7 @@ use crate::parallel::in_parallel;
 
 /// A session that was predicted from the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct LeftOutSession {
     /// Its number in [`Evidence::session`].
     pub session: usize,

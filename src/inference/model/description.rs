@@ -4,6 +4,7 @@ use std::fmt;
 
 /// A finding in words.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Description {
     /// What the recording shows, with values and their 95 % intervals, for example
     /// `Loads are felt 1.02 ± 0.04 N too small`.

@@ -13,6 +13,7 @@ use crate::inference::Location;
 /// `diagnosis/calibration/effects`), which are the only source of names: `--help`, docs, JSON and
 /// "cannot be tested" read them.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Effect {
     /// Name in JSON, tables and arguments, for example `friction`.
     pub name: &'static str,
@@ -24,8 +25,8 @@ pub struct Effect {
     pub formula: &'static str,
     /// Its usual size (standard deviation of the prior) and the source of that number.
     pub prior: &'static str,
-    /// Its numbers: name with unit, and meaning.
-    pub parameters: &'static [(&'static str, &'static str)],
+    /// Its numbers: names with their units, three of a vector, and what they mean.
+    pub parameters: &'static [(&'static [&'static str], &'static str)],
     /// What a recording must have so that it can be seen.
     pub needs: &'static str,
     /// What it is called where its numbers are said: `friction in the slide`.
@@ -44,6 +45,7 @@ pub struct Effect {
 
 /// What sort of thing is wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Kind {
     /// A law that acts on every datum alike: it will act on the next recording too.
     Physics,
@@ -66,6 +68,7 @@ impl Kind {
 
 /// Where `--apply` writes an effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum WrittenTo {
     /// Into the model's file: the rod's, the robot's.
     Model,
@@ -77,6 +80,7 @@ pub enum WrittenTo {
 
 /// Which findings of one effect are reported as one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Reported {
     /// Each by itself.
     Alone,

@@ -8,6 +8,7 @@ use crate::inference::{NominalParameter, Variable};
 
 /// A recording as the engine sees it, n data.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Evidence {
     /// Recorded less predicted by the base model, n, in one unit for all (m).
     pub residual: DVector<f64>,
@@ -170,6 +171,7 @@ impl Evidence {
 
 /// A number that every datum has, along which a mismatch may be structured.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Covariate {
     /// Which.
     pub variable: Variable,

@@ -7,12 +7,14 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::inference::columns::stored_column::StoredColumn;
 use crate::inference::{Description, Effect, Estimate, Finding, FindingPart, Hypothesis, Location, Term};
+use crate::units::Unit;
 
 /// Step of a derivative, relative to the size of a parameter.
 pub const DERIVATIVE_STEP: f64 = 1e-4;
 
 /// One effect at one place.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Candidate {
     /// The effect. Candidates of one effect share its prior probability.
     pub effect: &'static Effect,
@@ -35,8 +37,8 @@ pub struct Candidate {
 pub struct Parameter {
     /// Name with its unit, for example `force_n`.
     pub name: String,
-    /// What one unit of the name is in SI.
-    pub unit: f64,
+    /// The unit of the name.
+    pub unit: Unit,
     /// Value at which nothing happens, SI.
     pub neutral: f64,
     /// Size at which the effect is typically met: standard deviation of its prior about the neutral

@@ -13,6 +13,7 @@ pub struct Term {
 
 /// A hypothesis with what the recording says about it.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Hypothesis {
     /// The effects, in the order in which they were found.
     pub terms: Vec<Term>,

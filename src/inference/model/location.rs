@@ -147,6 +147,7 @@ pub enum Location {
 
 /// What stands in the user's files, by the names that it has there.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Key {
     /// Columns, keys, ids or files: `q4_deg`, `dy_um and dz_um`, `clamps 1 and 2`, `5.toml`.
     pub names: String,
@@ -157,6 +158,7 @@ pub struct Key {
 /// A part of rig, rod or robot that every file of its kind has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(missing_docs)]
+#[non_exhaustive]
 pub enum Part {
     Rod,
     Root,

@@ -2,6 +2,7 @@
 
 /// A number of the model's file, or of the rig's set-up.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct NominalParameter {
     /// For people: `E of steel`.
     pub name: String,
@@ -17,6 +18,7 @@ pub struct NominalParameter {
 
 /// What a recording says of a nominal number.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct NominalEstimate {
     /// The number.
     pub number: NominalParameter,

@@ -16,6 +16,7 @@ use crate::statistics::f_survival;
 
 /// The test.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct LackOfFit {
     /// F.
     pub f: f64,

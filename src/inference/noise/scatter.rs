@@ -31,6 +31,7 @@ pub const SUSPECT: f64 = 5.0;
 
 /// A single datum far off.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Suspect {
     /// Index of the datum.
     pub datum: usize,
@@ -40,6 +41,7 @@ pub struct Suspect {
 
 /// A noise that somebody stated, against what is left.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct NoiseTest {
     /// Stated standard deviation of a datum; `None` where nobody stated one.
     pub stated: Option<f64>,

@@ -12,7 +12,8 @@
 //! (A·v)₁ = v₁   (A·v)ₜ = (vₜ − φ·vₜ₋₁)/√(1 − φ²)   and a = A·1,
 //!
 //! (1 − (1 − 1/√(1 + ρ·|a|²))/|a|² · a·aᵀ)·A takes its place. Where neighbours along a course have
-//! errors in common, [`crate::inference::noise::correlated_noise`] makes them independent. What is left is projected
+//! errors in common, [`correlated_noise`](crate::inference::noise::correlated_noise) makes them
+//! independent. What is left is projected
 //! on the complement of the whitened nuisance columns, M = 1 − Q·Qᵀ.
 
 use std::collections::{BTreeMap, HashMap};

@@ -12,6 +12,7 @@ use crate::inference::{
 
 /// The answer of the engine.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Diagnosis {
     /// The effects that were adopted, strongest first.
     pub findings: Vec<Finding>,
@@ -65,6 +66,7 @@ pub struct Diagnosis {
 
 /// A structured remainder that no effect of the library explains.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Discrepancy {
     /// Index of the curve among the candidates; `None` where only the averages of repeats show
     /// that something is left.
@@ -88,6 +90,7 @@ impl Discrepancy {
 
 /// What shows that something is left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ShownBy {
     /// A smooth curve describes it.
     Curve,

@@ -3,10 +3,14 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::inference::{Description, Effect, Hypothesis, Kind, Location, Proposal, Quantity, Term};
+use crate::inference::{
+    Description, Effect, Hypothesis, Kind, Location, Proposal, Quantity, Term, WrittenTo,
+};
+use crate::units::Unit;
 
 /// An effect that was adopted: one term of the hypothesis, or several that are reported as one.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Finding {
     /// What it is.
     pub effect: &'static Effect,
@@ -22,11 +26,15 @@ pub struct Finding {
     pub p_value: f64,
     /// Root mean square of what it explains, in the unit of the evidence.
     pub explains: f64,
-    /// How many searches without a part of the data find it again, of how many.
+    /// How many searches without a part of the data find it again, of how many. `None` without
+    /// folds, and of a mistake: it is undone before there is a model whose errors could be held
+    /// out, and its odds stand in `p_value`.
     pub found_in_folds: Option<(usize, usize)>,
     /// Share of the squares of the held-out errors before that comes back where it is left out of
-    /// what the others hold; negative where it does harm. `None` without folds.
+    /// what the others hold; negative where it does harm. `None` where `found_in_folds` is.
     pub held_out_loss: Option<f64>,
+    /// Which file holds it once it is corrected; of a mistake that which it is undone in.
+    pub written_to: WrittenTo,
     /// The measurement that would separate it from its rivals.
     pub next: Option<Proposal>,
     /// Its terms, the strongest first.
@@ -35,6 +43,7 @@ pub struct Finding {
 
 /// One term of a finding.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct FindingPart {
     /// The candidate with its values.
     pub term: Term,
@@ -58,11 +67,12 @@ pub struct FindingPart {
 
 /// A number with its 95 % interval, SI.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Estimate {
     /// Name with its unit, for example `force_n`.
     pub name: String,
-    /// What one unit of the name is in SI.
-    pub unit: f64,
+    /// The unit of the name.
+    pub unit: Unit,
     /// Value.
     pub value: f64,
     /// Lower end of the interval.
@@ -73,6 +83,7 @@ pub struct Estimate {
 
 /// An effect that may stand in the place of a part of a finding.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Rival {
     /// What it is.
     pub effect: &'static Effect,
@@ -104,10 +115,22 @@ impl Rival {
 }
 
 impl Estimate {
+    /// Of this name, which ends with its unit; the numbers are SI.
+    pub fn new(name: impl Into<String>, value: f64, low: f64, high: f64) -> Estimate {
+        let name = name.into();
+        Estimate { unit: Unit::of_key(&name), name, value, low, high }
+    }
+
+    /// Of this name, whose numbers stay as they stand in a file: in the unit of the name.
+    pub fn as_written(name: impl Into<String>, value: f64, low: f64, high: f64) -> Estimate {
+        let new = Estimate::new(name, value, low, high);
+        Estimate { unit: new.unit.as_written(), ..new }
+    }
+
     /// In the unit of its name.
     pub fn quantity(&self) -> Quantity {
-        let unit = self.unit;
-        Quantity { value: self.value / unit, low: self.low / unit, high: self.high / unit }
+        let si = self.unit.si;
+        Quantity { value: self.value / si, low: self.low / si, high: self.high / si }
     }
 }
 
@@ -129,6 +152,7 @@ impl Finding {
             explains: 0.0,
             found_in_folds: None,
             held_out_loss: None,
+            written_to: effect.written_to,
             next: None,
             parts: vec![part],
         }
@@ -151,6 +175,7 @@ impl Finding {
             explains: 0.0,
             found_in_folds: None,
             held_out_loss: None,
+            written_to: effect.written_to,
             next: None,
             parts: Vec::new(),
         }

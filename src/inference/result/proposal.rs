@@ -5,6 +5,7 @@ use crate::spatial::{Axis, Direction, Pose};
 
 /// A measurement that would separate a finding from its rivals.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Proposal {
     /// In the user's words; a full sentence.
     pub words: String,
@@ -19,6 +20,7 @@ pub struct Proposal {
 
 /// A measurement as numbers, SI.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Plan {
     /// Loads to hang and offsets to read.
     Loads(LoadPlan),
@@ -28,6 +30,7 @@ pub enum Plan {
 
 /// Loads on a rod.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct LoadPlan {
     /// Where the loads pull to.
     pub direction: Direction,
@@ -49,6 +52,7 @@ pub struct LoadPlan {
 
 /// Poses of a robot, beside those that were measured.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct PosePlan {
     /// In their order.
     pub poses: Vec<PlannedPose>,
@@ -58,6 +62,7 @@ pub struct PosePlan {
 
 /// A pose to measure.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct PlannedPose {
     /// Joint values, rad or m.
     pub joints: Vec<f64>,

@@ -17,6 +17,7 @@ pub struct Ranked {
 
 /// What a diagnosis made of an effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Rank {
     /// It is a finding, or what remains.
     Adopted,

@@ -4,6 +4,7 @@ use crate::inference::{Effect, Location};
 
 /// An effect that a recording has no data for.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct NotTestable {
     /// What it is.
     pub effect: &'static Effect,
@@ -13,6 +14,7 @@ pub struct NotTestable {
 
 /// An effect that the base model takes up: were it there, its parameters would hide it.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Absorbed {
     /// What it is.
     pub effect: &'static Effect,

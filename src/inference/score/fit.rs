@@ -90,7 +90,7 @@ impl Search<'_> {
     fn alike(&self, terms: &[Term]) -> Vec<Vec<usize>> {
         let of_term = |term: &Term| {
             let parameters = &self.model.candidates()[term.candidate].parameters;
-            parameters.chunk_by(|a, b| a.unit == b.unit).map(<[_]>::len).collect()
+            parameters.chunk_by(|a, b| a.unit.si == b.unit.si).map(<[_]>::len).collect()
         };
         terms.iter().map(of_term).collect()
     }

@@ -9,7 +9,7 @@ use crate::report::pictures::calibration::{
     PoseVector, ResidualGroup, error_distribution, error_over_workspace, parameter_corrections,
     residual_vectors, residuals_against, residuals_by_group,
 };
-use crate::robot::Parameter;
+use crate::robot::{Parameter, ParameterGroup};
 use crate::units::{DEG, MM, UM};
 
 /// Width of a 95 % interval in standard errors.
@@ -76,7 +76,7 @@ pub(in crate::report) fn mode_residuals(
     let mut groups: Vec<ResidualGroup> = recording
         .groups
         .iter()
-        .map(|group| ResidualGroup { name: group.name.clone(), poses: Vec::new() })
+        .map(|group| ResidualGroup { name: group.name.to_string(), poses: Vec::new() })
         .collect();
     for (row, entry) in recording.rows.iter().enumerate() {
         groups[entry.group].poses.push(PoseResidual {
@@ -123,11 +123,11 @@ pub(super) fn vectors(calibration: &Calibration) -> Figure {
 /// Corrections of lengths and of angles; a compliance as the angle that it makes at the joint's
 /// largest torque has no place here.
 pub(super) fn corrections(calibration: &Calibration) -> Figure {
-    let corrections = |unit: f64, wanted: &dyn Fn(Parameter) -> bool| -> Vec<ParameterCorrection> {
+    let corrections = |kind: CorrectionKind, unit: f64| -> Vec<ParameterCorrection> {
         calibration
             .parameters
             .iter()
-            .filter(|estimate| wanted(estimate.parameter))
+            .filter(|estimate| CorrectionKind::of(estimate.parameter) == Some(kind))
             .map(|estimate| {
                 let correction = (estimate.value - estimate.nominal) / unit;
                 let half = estimate.std_error.map(|error| INTERVAL * error / unit);
@@ -140,9 +140,25 @@ pub(super) fn corrections(calibration: &Calibration) -> Figure {
             })
             .collect()
     };
-    let is_length = |p: Parameter| matches!(p, Parameter::D(_) | Parameter::A(_) | Parameter::Tool(_));
-    let is_angle = |p: Parameter| matches!(p, Parameter::Theta(_) | Parameter::Alpha(_) | Parameter::Beta(_));
-    parameter_corrections(&corrections(MM, &is_length), &corrections(MRAD, &is_angle))
+    let (lengths, angles) = (CorrectionKind::Length, CorrectionKind::Angle);
+    parameter_corrections(&corrections(lengths, MM), &corrections(angles, MRAD))
+}
+
+/// Which axis a correction is drawn on.
+#[derive(Clone, Copy, PartialEq)]
+enum CorrectionKind {
+    Length,
+    Angle,
+}
+
+impl CorrectionKind {
+    fn of(parameter: Parameter) -> Option<CorrectionKind> {
+        match parameter.group() {
+            ParameterGroup::LinkLength | ParameterGroup::Tool => Some(CorrectionKind::Length),
+            ParameterGroup::LinkTwist | ParameterGroup::JointZero => Some(CorrectionKind::Angle),
+            ParameterGroup::BasePosition | ParameterGroup::BaseRotation | ParameterGroup::Compliance => None,
+        }
+    }
 }
 
 /// How the loops of one or more modes converged.

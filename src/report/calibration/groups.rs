@@ -21,7 +21,7 @@ pub(super) fn group_summaries(
                 .filter(|(row, _)| row.group == index)
                 .map(|(_, &residual)| residual)
                 .collect();
-            let name = if group.name.is_empty() { "all poses".to_owned() } else { group.name.clone() };
+            let name = if group.name.is_tracked() { "all poses".to_owned() } else { group.name.to_string() };
             (name, lengths.len(), Summary::of(&lengths))
         })
         .collect()

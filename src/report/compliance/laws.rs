@@ -27,7 +27,7 @@ pub fn json(study: &Study) -> Value {
     };
     let law = |law: &RodLaw| {
         json!({
-            "place": law.place,
+            "place": law.place.to_string(),
             "variable": law.variable.key(),
             "formula": law.formula,
             "unit": law.unit(),
@@ -59,7 +59,7 @@ pub fn blocks(study: &Study) -> Vec<Block> {
     if !is_used(study) || study.laws.is_empty() {
         return Vec::new();
     }
-    let laws: Vec<String> = study.laws.laws().map(RodLaw::words).collect();
+    let laws: Vec<String> = study.laws.laws().map(RodLaw::to_string).collect();
     let words = format!(
         "The rod file has laws beside the beam model: {}. With them the deflection is not proportional to the load: \
          C^F and C^g above are deflection over load at a contact force of {} N and under 1 g. Derivatives, shapes and \

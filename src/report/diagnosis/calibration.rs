@@ -14,14 +14,14 @@ use super::subject::{Errors, LawNote, LawSubject, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::calibration::campaign::Targets;
 use crate::calibration::{MOST_SCATTER, Warning};
-use crate::diagnosis::calibration::{
-    Applied, CalibrationDiagnosis, Gear, destination as written_to, law_destination, remark,
+use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, law_destination, remark};
+use crate::inference::{
+    Finding, FindingPart, ForwardModel, Kind, Location, Plan, PosePlan, ShownBy, Variable, WrittenTo,
 };
-use crate::inference::{Finding, ForwardModel, Kind, Location, Plan, PosePlan, ShownBy, Variable, WrittenTo};
 use crate::report::calibration::warnings as of_calibration;
 use crate::report::{Block, Report, Section};
 use crate::robot::{Motion, is_urdf};
-use crate::units::{DEG, MM, UM, URAD, significant};
+use crate::units::{DEG, MM, UM, significant};
 
 /// Coordinates of a pose.
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -121,14 +121,14 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
             ("distances", distances.json()),
             ("as_recorded", json!(model.recorded.map(|recorded| distances_json(&recorded)))),
         ],
-        of_findings: diagnosis.findings.iter().map(|finding| more_of(found, finding)).collect(),
+        of_findings: diagnosis.findings.iter().map(more_of).collect(),
         details: diagnosis.findings.iter().map(|finding| details(found, finding)).collect(),
         sessions: (
             "Each clamp or placement predicted from the others, the search for effects included; rms of a coordinate, \
              about the socket's fitted position where that is unknown.",
             "calibration as it is",
         ),
-        session_name: Box::new(|session| model.session(session).to_owned()),
+        session_name: Box::new(|session| model.session(session)),
         plan: Box::new(|plan| match plan {
             Plan::Poses(plan) => pose_plan(found, plan),
             Plan::Loads(_) => Value::Null,
@@ -168,11 +168,11 @@ fn far_from_file(found: &CalibrationDiagnosis) -> Option<String> {
 }
 
 /// Where `--apply` writes a finding; `None` where no file has a place for it.
-fn destination(found: &CalibrationDiagnosis, finding: &Finding) -> Option<&'static str> {
+fn destination(finding: &Finding) -> Option<&'static str> {
     if finding.parts.is_empty() {
         return Some("campaign");
     }
-    match written_to(finding, &found.model) {
+    match finding.written_to {
         WrittenTo::Model => Some("robot"),
         WrittenTo::Recording => Some("measurements"),
         WrittenTo::Nowhere => None,
@@ -186,7 +186,7 @@ pub fn announced(report: &mut Report, found: &CalibrationDiagnosis) {
         (is_urdf(&campaign.robot_text), matches!(campaign.measurements.targets, Targets::Sockets(_)));
     let line = |finding: &Finding| {
         let what = (finding.effect.cause_at)(&finding.location);
-        match destination(found, finding) {
+        match destination(finding) {
             Some("robot") if is_urdf => {
                 format!("Into a file beside the URDF, for calibrate and predict: {what}")
             }
@@ -230,40 +230,36 @@ fn details(found: &CalibrationDiagnosis, finding: &Finding) -> String {
     }
 }
 
-/// Of a gear the size of its whole error.
-fn more_of(found: &CalibrationDiagnosis, finding: &Finding) -> Vec<(&'static str, Value)> {
-    let written = ("written_to", destination(found, finding).map_or(Value::Null, Value::from));
-    let Some((joint, curve)) = gear_of(found, finding).and_then(|j| Some((j, found.gear(j)?))) else {
-        return vec![written];
-    };
-    let angles = found.model.angles(joint);
-    let turns: Vec<f64> = angles.iter().map(|&q| curve.at(q) / URAD).collect();
-    let (low, high) = turns.iter().fold((0.0f64, 0.0f64), |(a, b), &t| (a.min(t), b.max(t)));
-    let square: f64 = turns.iter().map(|t| t * t).sum();
-    let cycles: Vec<Value> = finding
-        .parts
-        .iter()
-        .map(|part| match found.model.gear_of(part) {
-            Some(gear @ (Gear::Harmonic { .. } | Gear::Wave { .. })) => {
-                json!(gear.frequency(&part.term.values).0)
+/// Numbers of a finding that have keys of their own: where it is written, and of a gear the size of
+/// its whole error.
+fn more_of(finding: &Finding) -> Vec<(&'static str, Value)> {
+    let mut more = vec![("written_to", destination(finding).map_or(Value::Null, Value::from))];
+    let sizes =
+        [("rms_urad", "recorded_rms_urad"), ("half_peak_to_peak_urad", "recorded_half_peak_to_peak_urad")];
+    let sizes = sizes.map(|(key, name)| Some((key, json!(finding.quantity(name)?.value))));
+    more.extend(sizes.into_iter().flatten());
+    if more.len() > 1 {
+        let names = ["cycles_per_rev", "second_cycles_per_rev"];
+        let cycles = |part: &FindingPart| {
+            let waves = part.estimates.iter().filter(|estimate| names.contains(&estimate.name.as_str()));
+            match waves.map(|estimate| estimate.value).collect::<Vec<_>>()[..] {
+                [] => Value::Null,
+                [cycles] => json!(cycles),
+                ref several => json!(several),
             }
-            Some(Gear::Harmonics { cycles_per_rev, .. }) => json!(cycles_per_rev),
-            _ => Value::Null,
-        })
-        .collect();
-    vec![
-        written,
-        ("rms_urad", json!((square / turns.len().max(1) as f64).sqrt())),
-        ("half_peak_to_peak_urad", json!(0.5 * (high - low))),
-        ("cycles_per_rev_of_parts", json!(cycles)),
-    ]
+        };
+        let of_parts: Vec<Value> = finding.parts.iter().map(cycles).collect();
+        more.push(("cycles_per_rev_of_parts", json!(of_parts)));
+    }
+    more
 }
 
 /// The poses to measure next, as numbers; a tracker's have no group.
 fn pose_plan(found: &CalibrationDiagnosis, plan: &PosePlan) -> Value {
     let campaign = found.model.campaign;
-    let mut names: Vec<&str> = campaign.measurements.groups.iter().map(|group| group.name.as_str()).collect();
-    names.extend(plan.new_fixture.iter().map(|(name, _)| name.as_str()));
+    let groups = campaign.measurements.groups.iter();
+    let mut names: Vec<String> = groups.map(|group| group.name.to_string()).collect();
+    names.extend(plan.new_fixture.iter().map(|(name, _)| name.clone()));
     let poses = plan.poses.iter().map(|pose| {
         let joints = pose.joints.iter().zip(&campaign.robot.joints);
         let joints = joints.map(|(value, joint)| match joint.motion {

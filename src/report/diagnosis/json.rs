@@ -128,7 +128,7 @@ fn of_finding(subject: &Subject, index: usize, finding: &Finding) -> Value {
 }
 
 fn estimate(estimate: &Estimate) -> Value {
-    let unit = estimate.unit;
+    let unit = estimate.unit.si;
     json!({
         "name": estimate.name,
         "value": estimate.value / unit,

@@ -4,8 +4,8 @@
 use super::headline::um;
 use super::subject::Subject;
 use crate::inference::{
-    Effect, Evidence, Finding, HeldOut as HeldOutErrors, LackOfFit, Location, NAMED, Rank, Ranked, Structure,
-    UNKNOWN, ranking,
+    Effect, Estimate, Evidence, Finding, HeldOut as HeldOutErrors, LackOfFit, Location, NAMED, Rank, Ranked,
+    Structure, UNKNOWN, ranking,
 };
 use crate::report::chart::Figure;
 use crate::report::pictures::diagnosis::{Candidate, Class, HeldOut, held_out, ranking as bars, to_one};
@@ -55,12 +55,12 @@ pub fn parameters(findings: &[Finding]) -> Table {
         for (k, estimate) in finding.estimates.iter().enumerate() {
             let first = |text: String| if k == 0 { text } else { String::new() };
             let numbers = [estimate.value, estimate.low, estimate.high];
-            let [value, low, high] = numbers.map(|x| significant(x / estimate.unit, 4));
+            let [value, low, high] = numbers.map(|x| significant(x / estimate.unit.si, 4));
             table.row([
                 first(finding.effect.spoken()),
                 first(finding.location.to_string()),
-                meaning(finding, &estimate.name),
-                unit(&estimate.name).map_or("", |(_, unit)| unit).to_owned(),
+                meaning(finding, estimate),
+                estimate.unit.symbol.to_owned(),
                 value,
                 low,
                 high,
@@ -72,45 +72,16 @@ pub fn parameters(findings: &[Finding]) -> Table {
 }
 
 /// What a parameter is, by its effect's record: `friction force`; of a vector its axis as well.
-fn meaning(finding: &Finding, name: &str) -> String {
+fn meaning(finding: &Finding, estimate: &Estimate) -> String {
+    let name = estimate.name.as_str();
     for (names, meaning) in finding.effect.parameters {
-        let names: Vec<&str> = names.split(", ").collect();
         match names.iter().position(|one| *one == name) {
             Some(axis) if names.len() == 3 => return format!("{meaning}, {}", ["x", "y", "z"][axis]),
             Some(_) => return (*meaning).to_owned(),
             None => {}
         }
     }
-    let bare = unit(name).map_or(name, |(end, _)| name.trim_end_matches(end));
-    bare.trim_end_matches('_').replace('_', " ")
-}
-
-/// The end of a parameter's name that is its unit, and the unit as people write it.
-fn unit(name: &str) -> Option<(&'static str, &'static str)> {
-    const UNITS: [(&str, &str); 21] = [
-        ("cycles_per_rev", "1/rev"),
-        ("per_decade", "1/decade"),
-        ("urad_per_nm3", "µrad/(N·m)³"),
-        ("urad_per_nm2", "µrad/(N·m)²"),
-        ("urad_per_nm", "µrad/(N·m)"),
-        ("urad_per_m", "µrad/m"),
-        ("urad_per_rad", "µrad/rad"),
-        ("n_per_mm", "N/mm"),
-        ("per_n2", "1/N²"),
-        ("per_n", "1/N"),
-        ("um_per_k", "µm/K"),
-        ("um_per_h", "µm/h"),
-        ("urad", "µrad"),
-        ("deg", "°"),
-        ("um", "µm"),
-        ("mm", "mm"),
-        ("kg", "kg"),
-        ("_g", "g"),
-        ("_n", "N"),
-        ("_s", "s"),
-        ("_k", "K"),
-    ];
-    UNITS.into_iter().find(|(end, _)| name.ends_with(end))
+    name.trim_end_matches(estimate.unit.suffix).trim_end_matches('_').replace('_', " ")
 }
 
 /// What else a finding may be (causes beyond those of its sentence), and where else.

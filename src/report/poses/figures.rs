@@ -37,7 +37,7 @@ pub fn plan(study: &PoseStudy) -> Figure {
             }
         }
     }
-    let is_tracked = study.places.iter().all(|place| place.name.is_empty());
+    let is_tracked = study.places.iter().all(|place| place.name.is_tracked());
     let views = [("from above", "y / mm", 1), ("from the side", "z / mm", 2)];
     let panel = |(title, label, axis): (&str, &str, usize)| {
         let at = |p: &Vector3<f64>| [p.x / MM, p[axis] / MM];

@@ -133,7 +133,7 @@ impl RigHeader {
     }
 }
 
-/// The header of the rig, the words of all other comment lines above the table, and warnings about
+/// The header of the rig, the text of all other comment lines above the table, and warnings about
 /// keys that are nearly known.
 pub(super) fn read(
     file: &str,
@@ -142,7 +142,7 @@ pub(super) fn read(
 ) -> Result<(RigHeader, Option<String>, Vec<Warning>)> {
     let mut load_noise_at = None;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let (mut header, mut seen, mut words, mut warnings) =
+    let (mut header, mut seen, mut comments, mut warnings) =
         (RigHeader::default(), Vec::new(), Vec::new(), Vec::new());
     let above = text.lines().take_while(|line| line.trim().is_empty() || line.trim_start().starts_with('#'));
     for (number, line) in (1..).zip(above) {
@@ -159,7 +159,7 @@ pub(super) fn read(
                 warnings.push(Warning::UnknownKey { key: key.to_owned(), nearest });
             }
             if !comment.is_empty() {
-                words.push(comment);
+                comments.push(comment);
             }
             continue;
         };
@@ -198,8 +198,8 @@ pub(super) fn read(
             hint: None,
         });
     }
-    let words = words.join(" ");
-    Ok((header, (!words.is_empty()).then_some(words), warnings))
+    let comments = comments.join(" ");
+    Ok((header, (!comments.is_empty()).then_some(comments), warnings))
 }
 
 #[cfg(test)]
@@ -272,8 +272,8 @@ mod tests {
     #[test]
     fn a_key_that_is_nearly_known_is_warned_about() {
         let readings = header_of("# noise_µm = 1.5\n# the rod = 5#\n").unwrap();
-        let words: Vec<String> = readings.warnings.iter().map(ToString::to_string).collect();
-        assert_eq!(words, ["the comment line with \"noise_µm\" is not read; did you mean noise_um?"]);
+        let warnings: Vec<String> = readings.warnings.iter().map(ToString::to_string).collect();
+        assert_eq!(warnings, ["the comment line with \"noise_µm\" is not read; did you mean noise_um?"]);
         assert_eq!(readings.header.noise, None);
     }
 

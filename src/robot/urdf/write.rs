@@ -27,6 +27,7 @@ use crate::units::URAD_PER_NM;
 
 /// A robot in its URDF.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Written {
     /// The whole file.
     pub text: String,

@@ -66,11 +66,12 @@ impl<'t> Source<'t> {
         self.wrong(attribute.range_value().start, found, expected)
     }
 
-    /// The attribute `name`, which has to be there and must not be blank; `words` say what it is.
-    pub fn required<'n>(&self, node: Node<'n, 't>, name: &str, words: &str) -> Result<&'n str> {
+    /// The attribute `name`, which has to be there and must not be blank; `expected` says what it
+    /// is.
+    pub fn required<'n>(&self, node: Node<'n, 't>, name: &str, expected: &str) -> Result<&'n str> {
         match node.attribute(name) {
             Some(value) if !value.trim().is_empty() => Ok(value),
-            _ => Err(self.is(node, name, words)),
+            _ => Err(self.is(node, name, expected)),
         }
     }
 

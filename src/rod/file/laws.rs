@@ -7,7 +7,7 @@ use super::check::Check;
 use crate::error::Result;
 use crate::limits;
 use crate::rod::constants::{self, RawConstant};
-use crate::rod::{LawMemory, LawVariable, Rod, RodLaw, Warning};
+use crate::rod::{LawMemory, LawVariable, Rod, RodLaw, RodLawPlace, Warning};
 use crate::toml_text::Number;
 
 #[derive(Deserialize)]
@@ -26,8 +26,6 @@ pub(super) struct RawLaw {
     constant: Vec<RawConstant>,
 }
 
-/// Places of a rod file besides its joints.
-const PLACES: [&str; 7] = ["rod", "clamp", "root", "slide", "dx", "dy", "dz"];
 /// Where in its range a formula is tried.
 const TRIED: usize = 8;
 
@@ -38,7 +36,7 @@ impl Check<'_> {
         for raw in raw {
             let law = self.law(raw, rod)?;
             if !(law.is_of_rod() && law.is_static()) {
-                self.warnings.push(Warning::LawOfRig { law: law.words(), is_static: law.is_static() });
+                self.warnings.push(Warning::LawOfRig { law: law.to_string(), is_static: law.is_static() });
             }
             rod.laws.push(law);
         }
@@ -47,13 +45,8 @@ impl Check<'_> {
 
     fn law(&self, raw: &RawLaw, rod: &Rod) -> Result<RodLaw> {
         let toml = self.toml;
-        let place = raw.place.get_ref();
-        let joints = rod.joints.iter().map(|joint| joint.name.as_str());
-        if !PLACES.contains(&place.as_str()) && joints.clone().all(|joint| joint != place) {
-            let known: Vec<&str> = PLACES.into_iter().chain(joints).collect();
-            return Err(toml.is("law.place", &raw.place, &format!("one of {}", known.join(", "))));
-        }
-        let at_place = || LawVariable::ALL.into_iter().filter(|variable| variable.is_at(place));
+        let place = self.place(raw, rod)?;
+        let at_place = || LawVariable::ALL.into_iter().filter(|variable| variable.is_at(&place));
         let Some(variable) = at_place().find(|variable| variable.key() == raw.variable.get_ref()) else {
             let known: Vec<&str> = at_place().map(LawVariable::key).collect();
             let expected = format!("a variable of {place}: {}", known.join(", "));
@@ -72,7 +65,7 @@ impl Check<'_> {
             for needed in of_key.constants() {
                 let own = law.constants.iter().find(|own| own.name == needed.name);
                 if !own.is_some_and(|own| needed.may_be(own.value)) {
-                    let expected = format!("with it a constant {}", needed.words());
+                    let expected = format!("with it a constant {}", needed.description());
                     return Err(toml.is("law.memory", memory, &expected));
                 }
             }
@@ -86,5 +79,18 @@ impl Check<'_> {
             }
         }
         Ok(law)
+    }
+
+    fn place(&self, raw: &RawLaw, rod: &Rod) -> Result<RodLawPlace> {
+        let place = RodLawPlace::named(raw.place.get_ref());
+        let joints = || rod.joints.iter().map(|joint| joint.name.as_str());
+        match &place {
+            RodLawPlace::Joint(name) if joints().all(|joint| joint != name) => {
+                let of_every_rod = RodLawPlace::OF_EVERY_ROD.iter().map(RodLawPlace::to_string);
+                let known: Vec<String> = of_every_rod.chain(joints().map(str::to_owned)).collect();
+                Err(self.toml.is("law.place", &raw.place, &format!("one of {}", known.join(", "))))
+            }
+            _ => Ok(place),
+        }
     }
 }

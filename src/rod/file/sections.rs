@@ -81,11 +81,11 @@ impl Check<'_> {
         let fields = raw.get_ref();
         let key = |field: &str| format!("{which}.{field}");
         let mut sides = [0.0; 2];
-        let words = [
+        let numbers = [
             ("width_mm", &fields.width_mm, "the side normal to the rod's plane in mm"),
             ("height_mm", &fields.height_mm, "the side in the rod's plane in mm"),
         ];
-        for ((field, number, expected), side) in words.into_iter().zip(&mut sides) {
+        for ((field, number, expected), side) in numbers.into_iter().zip(&mut sides) {
             let Some(number) = number else { return Err(self.missing(which, raw, field, expected)) };
             *side = self.toml.positive(&key(field), number)?;
             self.usual(&key(field), *side, "mm", 1.0, 1000.0);
@@ -109,14 +109,14 @@ impl Check<'_> {
     fn general(&mut self, which: &str, raw: &Spanned<RawPipe>) -> Result<General> {
         let fields = raw.get_ref();
         let mut constants = [0.0; 5];
-        let words = [
+        let numbers = [
             ("area_mm2", &fields.area_mm2, "the area in mm²"),
             ("iy_mm4", &fields.iy_mm4, "the second moment of area for bending in the rod's plane in mm⁴"),
             ("iz_mm4", &fields.iz_mm4, "the second moment of area for bending out of the rod's plane in mm⁴"),
             ("j_mm4", &fields.j_mm4, "the torsion constant in mm⁴"),
             ("kappa", &fields.kappa, "the shear coefficient, 5/6 for a rectangle"),
         ];
-        for ((field, number, expected), constant) in words.into_iter().zip(&mut constants) {
+        for ((field, number, expected), constant) in numbers.into_iter().zip(&mut constants) {
             let Some(number) = number else { return Err(self.missing(which, raw, field, expected)) };
             *constant = self.toml.positive(&format!("{which}.{field}"), number)?;
         }

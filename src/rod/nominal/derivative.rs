@@ -78,33 +78,33 @@ impl Rod {
 
 impl Pipe {
     fn lifted<T: Number>(&self) -> Pipe<T> {
-        let (constant, material) = (|x: f64| T::from(x), &self.material);
+        let (lift, material) = (|x: f64| T::from(x), &self.material);
         let section = match self.section {
             Section::Round(round) => Section::Round(Round {
-                outer_diameter: constant(round.outer_diameter),
-                inner_diameter: constant(round.inner_diameter),
+                outer_diameter: lift(round.outer_diameter),
+                inner_diameter: lift(round.inner_diameter),
             }),
             Section::Rectangle(rectangle) => Section::Rectangle(Rectangle {
-                width: constant(rectangle.width),
-                height: constant(rectangle.height),
-                wall: rectangle.wall.map(constant),
+                width: lift(rectangle.width),
+                height: lift(rectangle.height),
+                wall: rectangle.wall.map(lift),
             }),
             Section::General(general) => Section::General(General {
-                area: constant(general.area),
-                iy: constant(general.iy),
-                iz: constant(general.iz),
-                torsion_constant: constant(general.torsion_constant),
-                shear_coefficient: constant(general.shear_coefficient),
+                area: lift(general.area),
+                iy: lift(general.iy),
+                iz: lift(general.iz),
+                torsion_constant: lift(general.torsion_constant),
+                shear_coefficient: lift(general.shear_coefficient),
             }),
         };
         let material = Material {
             name: material.name.clone(),
-            youngs_modulus: constant(material.youngs_modulus),
-            shear_modulus: constant(material.shear_modulus),
-            density: constant(material.density),
-            poisson_ratio: constant(material.poisson_ratio),
-            yield_strength: material.yield_strength.map(constant),
-            shear_coefficient_factor: constant(material.shear_coefficient_factor),
+            youngs_modulus: lift(material.youngs_modulus),
+            shear_modulus: lift(material.shear_modulus),
+            density: lift(material.density),
+            poisson_ratio: lift(material.poisson_ratio),
+            yield_strength: material.yield_strength.map(lift),
+            shear_coefficient_factor: lift(material.shear_coefficient_factor),
             standard_uncertainty: material.standard_uncertainty,
         };
         Pipe { section, material }

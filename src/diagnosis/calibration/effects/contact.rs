@@ -2,17 +2,15 @@
 
 use nalgebra::Vector3;
 
+use super::super::model::entry::linear;
+use super::super::model::{CalibrationModel, Configuration};
 use super::loads::{gives_way, pulled};
 use super::{
     CalibrationEffect, Context, Entry, Transfer, first, lack, no_event, nowhere, out_of_the_points,
     own_parameters, single, size,
 };
 use crate::calibration::campaign::Targets;
-use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::entry::linear;
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
-use crate::units::MM;
 
 /// Error of a contact force, N.
 const CONTACT: f64 = 0.3;
@@ -28,9 +26,9 @@ pub static CONTACT_FORCE_VARIATION: CalibrationEffect = CalibrationEffect {
         formula: "R·C^F·Rᵀ·F + yield(tip, F): F in the device frame of the clamp",
         prior: "0.3 N: sensor springs are stated to 10 or 20 % of 2 N",
         parameters: &[
-            ("x_n", "force beyond the stated one along x of the device frame"),
-            ("y_n", "force beyond the stated one along y of the device frame"),
-            ("z_n", "force beyond the stated one along z of the device frame"),
+            (&["x_n"], "force beyond the stated one along x of the device frame"),
+            (&["y_n"], "force beyond the stated one along y of the device frame"),
+            (&["z_n"], "force beyond the stated one along z of the device frame"),
         ],
         needs: "clamps, and a rod or joints of known compliance",
         cause: "a contact force that differs from the stated one",
@@ -61,7 +59,7 @@ fn contacts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
                 let group = context.recording.rows[row].group;
                 is_there(group).then(|| groups[group].device.rotation.column(axis).into())
             };
-            (linear(name, 1.0, CONTACT), context.column(|row, there| pushed(context, there, push(row))))
+            (linear(name, CONTACT), context.column(|row, there| pushed(context, there, push(row))))
         };
         let parameters = ["x_n", "y_n", "z_n"].into_iter().enumerate().map(along).collect();
         Entry::new(&CONTACT_FORCE_VARIATION.effect, location, parameters)
@@ -79,7 +77,7 @@ fn at_clamps(context: &Context, at: impl Fn(Location, &dyn Fn(usize) -> bool) ->
     let groups = &context.recording.groups;
     let mut entries = vec![at(Location::AllClamps, &|_| true)];
     if groups.len() > 1 {
-        let named = |k: usize| at(Location::Named(groups[k].name.clone()), &|group| group == k);
+        let named = |k: usize| at(Location::Named(groups[k].name.to_string()), &|group| group == k);
         entries.extend((0..groups.len()).map(named));
     }
     entries
@@ -102,7 +100,7 @@ pub static CONTACT_SPRING: CalibrationEffect = CalibrationEffect {
         formula: "R·C^F·Rᵀ·k·u + yield(tip, k·u): u the recorded displacement in the device frame, so that \
                   the force is F₀ + k·u; k < 0 pushes back",
         prior: "0.1 N/mm: springs of plunger gauges have 0.05 to 0.3",
-        parameters: &[("n_per_mm", "k: change of the force per displacement")],
+        parameters: &[(&["n_per_mm"], "k: change of the force per displacement")],
         needs: "clamps, displacements that differ by more than a tenth of a millimetre, and a rod or joints \
                 of known compliance",
         cause: "springs of the device, whose force changes with the displacement",
@@ -135,12 +133,12 @@ fn springs(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     at_clamps(context, |location, is_there| {
         let push = |row: usize| is_there(context.recording.rows[row].group).then(|| displacement(row));
         let column = context.column(|row, there| pushed(context, there, push(row)));
-        single(&CONTACT_SPRING, location, linear("n_per_mm", 1.0 / MM, RATE), column)
+        single(&CONTACT_SPRING, location, linear("n_per_mm", RATE), column)
     })
 }
 
 fn is_of_clamps(context: &Context) -> bool {
-    !context.has_sockets() && context.recording.groups.iter().any(|group| !group.name.is_empty())
+    !context.has_sockets() && context.recording.groups.iter().any(|group| !group.name.is_tracked())
 }
 
 fn spring_observed(finding: &Finding, _: &CalibrationModel) -> String {

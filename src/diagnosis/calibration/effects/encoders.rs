@@ -1,12 +1,12 @@
 //! What a joint turns besides what its encoder shows: a scale, and what its neighbour takes along.
 
+use super::super::model::CalibrationModel;
+use super::super::model::entry::linear;
 use super::{
     CalibrationEffect, Context, Entry, Transfer, along, capital, first, first_value, joint, no_event,
     own_parameters, single,
 };
 use crate::calibration::campaign::Campaign;
-use crate::diagnosis::calibration::entry::linear;
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{Effect, Finding, JointVariable, Kind, Location, NotTestable, Reported, WrittenTo};
 use crate::robot;
 
@@ -25,7 +25,7 @@ pub static ENCODER_SCALE: CalibrationEffect = CalibrationEffect {
         summary: "a joint turns more or less than its encoder shows",
         formula: "Jⱼ·(s − 1)·qⱼ",
         prior: "1e-4: 1 count in 10⁴, the share of an eccentric disc read over part of a turn",
-        parameters: &[("factor", "s: angle turned over angle shown")],
+        parameters: &[(&["factor"], "s: angle turned over angle shown")],
         needs: "a joint that turns",
         cause: "the scale of its encoder",
         cause_at: |location| format!("the encoder's scale of {location}"),
@@ -44,7 +44,7 @@ pub static ENCODER_SCALE: CalibrationEffect = CalibrationEffect {
 
 fn scales(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
     let of_joint = |j: usize| {
-        let mut factor = linear("factor", 1.0, SCALE);
+        let mut factor = linear("factor", SCALE);
         factor.neutral = 1.0;
         single(&ENCODER_SCALE, joint(j), factor, context.turn(j, |_, there| there.joints[j]))
     };
@@ -73,7 +73,7 @@ pub static WRIST_COUPLING: CalibrationEffect = CalibrationEffect {
         summary: "a wrist joint drives its neighbour",
         formula: "J_J·k·q_I: joint I drives joint J, neighbours among the last three",
         prior: "1e-4 rad per rad",
-        parameters: &[("fraction", "rotation of the driven joint per rotation of the driving one")],
+        parameters: &[(&["fraction"], "rotation of the driven joint per rotation of the driving one")],
         needs: "neighbouring joints of a wrist that turn",
         cause: "coupled wrist gears",
         cause_at: |location| format!("coupling of {location}"),
@@ -99,7 +99,7 @@ fn couplings(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
     let both = pairs.filter(|(i, j)| turning.contains(i) && turning.contains(j));
     both.map(|(from, to)| {
         let column = context.turn(to, |_, there| there.joints[from]);
-        let fraction = linear("fraction", 1.0, COUPLED);
+        let fraction = linear("fraction", COUPLED);
         single(&WRIST_COUPLING, Location::Coupling { from, to }, fraction, column)
     })
     .collect()

@@ -1,19 +1,19 @@
 //! What happened at single poses, and to a joint after one of them.
 
+use super::super::model::CalibrationModel;
+use super::super::model::entry::linear;
+use super::super::model::law::Law;
+use super::super::model::vector;
 use super::fixture::places_of_all;
 use super::{
     CalibrationEffect, Context, Entry, KNOCK, MOST_PLACES, SHIFT, Transfer, capital, first, first_value,
     out_of_the_points, own_parameters, single, three, unit,
 };
 use crate::calibration::Campaign;
-use crate::diagnosis::calibration::entry::linear;
-use crate::diagnosis::calibration::law::Law;
-use crate::diagnosis::calibration::model::CalibrationModel;
-use crate::diagnosis::calibration::vector;
 use crate::inference::{
     Candidate, Effect, Finding, FindingPart, Kind, Location, NotTestable, Reported, WrittenTo,
 };
-use crate::units::{DEG, MM, UM, URAD};
+use crate::units::{DEG, MM, UM};
 
 /// A pose that was read wrongly, m.
 pub(in crate::diagnosis::calibration) const MISREAD: f64 = 0.5 * MM;
@@ -31,9 +31,9 @@ pub static OUTLIER: CalibrationEffect = CalibrationEffect {
         formula: "t at one row",
         prior: "0.5 mm: a reading that is wrong by a tooth or by a digit",
         parameters: &[
-            ("dx_um", "displacement along x of {W}"),
-            ("dy_um", "displacement along y of {W}"),
-            ("dz_um", "displacement along z of {W}"),
+            (&["dx_um"], "displacement along x of {W}"),
+            (&["dy_um"], "displacement along y of {W}"),
+            (&["dz_um"], "displacement along z of {W}"),
         ],
         needs: "poses",
         cause: "a misread or disturbed pose",
@@ -60,7 +60,7 @@ fn far_out(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
     let at = |row: usize| {
         let moved = |axis: usize| context.part(row..row + 1, |_, _| unit(axis));
         let location = Location::Pose { row, name: context.pose_name(row) };
-        Entry::new(&OUTLIER.effect, location, three(&SHIFT, UM, MISREAD, moved))
+        Entry::new(&OUTLIER.effect, location, three(&SHIFT, MISREAD, moved))
     };
     rows.into_iter().map(at).collect()
 }
@@ -87,7 +87,7 @@ pub static JOINT_SHIFT: CalibrationEffect = CalibrationEffect {
         summary: "the zero of a joint moved after one pose",
         formula: "Jⱼ·δ from some row on: δ is by how much more the joint turns than it shows",
         prior: "0.5 mrad: a slip of an encoder's coupling that nobody sees; degrees are a mistake in some rows",
-        parameters: &[("zero_urad", "shift of the joint's zero")],
+        parameters: &[(&["zero_urad"], "shift of the joint's zero")],
         needs: "poses in the order of recording",
         cause: "a slip of the joint or of its encoder",
         cause_at: |location| format!("a shift of a joint's zero ({location})"),
@@ -134,7 +134,7 @@ fn into_the_angles(finding: &Finding, _: &CalibrationModel, extended: &mut Campa
 /// A joint with another zero from some row on.
 fn slipped(context: &Context, joint: usize, from: usize, location: Location) -> Entry {
     let column = context.turn_from(joint, from, |_, _| 1.0);
-    let mut zero = linear("zero_urad", URAD, KNOCK.1);
+    let mut zero = linear("zero_urad", KNOCK.1);
     zero.bounds = (-FARTHEST_SLIP, FARTHEST_SLIP);
     single(&JOINT_SHIFT, location, zero, column)
 }

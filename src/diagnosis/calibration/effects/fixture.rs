@@ -1,4 +1,4 @@
-//! What is wrong with the fixture, or happened to it or to the robot's base.
+//! What is wrong with the fixture, or happened to it.
 //!
 //! A shift leaves two rows at least on either side, else it is an outlier.
 
@@ -6,19 +6,15 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::super::model::law::Law;
+use super::super::model::{CalibrationModel, Configuration};
 use super::{
-    CalibrationEffect, Context, EVERY_ROW, Entry, KNOCK, SHIFT, TURN, Transfer, capital, lack, no_event,
+    CalibrationEffect, Context, EVERY_ROW, Entry, KNOCK, SHIFT, TURN, Transfer, capital, lack, law, no_event,
     out_of_the_points, own_parameters, size, three, unit,
 };
-use crate::calibration::campaign::Campaign;
-use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::law::Law;
-use crate::diagnosis::calibration::model::CalibrationModel;
-use crate::diagnosis::calibration::vector::{self, Length};
-use crate::inference::{
-    Candidate, Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Reported, WrittenTo,
-};
-use crate::units::{DEG, MM, UM, URAD};
+use crate::calibration::campaign::{Campaign, GroupName};
+use crate::inference::{Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
+use crate::units::UM;
 
 /// Error of a clamp's place, m and rad.
 const MISPLACED: (f64, f64) = (100.0 * UM, 0.5e-3);
@@ -27,8 +23,6 @@ const MISPLACED: (f64, f64) = (100.0 * UM, 0.5e-3);
 const AT_FIRST_SIGHT: usize = 50;
 /// Angle by which a knock turns a plate of sockets, rad: 0.5 mm over its width.
 const PLATE: f64 = 3e-3;
-/// Distance of the ball from the flange below which no rotation moves it, m.
-const LEAST_LEVER: f64 = 10.0 * MM;
 
 /// A clamp that is not where the campaign says.
 pub static CLAMP_POSE: CalibrationEffect = CalibrationEffect {
@@ -40,8 +34,8 @@ pub static CLAMP_POSE: CalibrationEffect = CalibrationEffect {
                   it is",
         prior: "100 µm and 0.5 mrad: a fixture that was measured by a hand-held gauge",
         parameters: &[
-            ("dx_um, dy_um, dz_um", "displacement of the clamp in {W}"),
-            ("rx_urad, ry_urad, rz_urad", "its rotation about the axes of {W}"),
+            (&["dx_um", "dy_um", "dz_um"], "displacement of the clamp in {W}"),
+            (&["rx_urad", "ry_urad", "rz_urad"], "its rotation about the axes of {W}"),
         ],
         needs: "at least two clamps",
         cause: "a wrong clamp position in the campaign",
@@ -75,11 +69,11 @@ fn clamps(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
                 false => Vector3::zeros(),
             })
         };
-        let mut six = three(&SHIFT, UM, MISPLACED.0, |axis| at(&|_| unit(axis)));
+        let mut six = three(&SHIFT, MISPLACED.0, |axis| at(&|_| unit(axis)));
         let centre = groups[k].device.origin;
         let turned = |axis: usize| at(&|there: &Configuration| unit(axis).cross(&(there.tip - centre)));
-        six.extend(three(&TURN, URAD, MISPLACED.1, turned));
-        Entry::new(&CLAMP_POSE.effect, Location::Named(groups[k].name.clone()), six)
+        six.extend(three(&TURN, MISPLACED.1, turned));
+        Entry::new(&CLAMP_POSE.effect, Location::Named(groups[k].name.to_string()), six)
     };
     (0..groups.len()).map(of_clamp).collect()
 }
@@ -92,7 +86,7 @@ pub static CLAMP_SHIFT: CalibrationEffect = CalibrationEffect {
         summary: "a clamp moved after one pose",
         formula: "−t from some row on: t is how far the clamp moved",
         prior: "0.5 mm: millimetres when one sees a knock, tenths when one does not",
-        parameters: &[("dx_um, dy_um, dz_um", "displacement of the clamp in {W}")],
+        parameters: &[(&["dx_um", "dy_um", "dz_um"], "displacement of the clamp in {W}")],
         needs: "four poses in a clamp",
         cause: "a knock or a slip of the clamp",
         cause_at: |location| format!("a shift ({location})"),
@@ -122,8 +116,8 @@ pub static SOCKET_SHIFT: CalibrationEffect = CalibrationEffect {
                   also turns by φ about the middle of its points",
         prior: "0.5 mm, and 3 mrad for a plate: 0.5 mm over its width",
         parameters: &[
-            ("dx_um, dy_um, dz_um", "displacement of the socket or plate in {W}"),
-            ("rx_urad, ry_urad, rz_urad", "rotation of a plate about the axes of {W}"),
+            (&["dx_um", "dy_um", "dz_um"], "displacement of the socket or plate in {W}"),
+            (&["rx_urad", "ry_urad", "rz_urad"], "rotation of a plate about the axes of {W}"),
         ],
         needs: "four poses in a socket, or on a plate",
         cause: "a knock or a slip of the socket",
@@ -146,12 +140,12 @@ pub static SOCKET_SHIFT: CalibrationEffect = CalibrationEffect {
 
 /// From then on it is another socket, or another plate.
 fn another_socket(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
-    let Location::Shift { what: Some(what), row, .. } = &finding.location else { return WrittenTo::Nowhere };
-    let is_moved = |at: usize| {
-        let own = &model.groups[at];
-        at > *row && (own == what || own.rsplit_once('/').is_some_and(|(plate, _)| plate == what))
+    let (Some(row), Law::Moved(sockets)) = (finding.location.moved_after(), law(finding, model)) else {
+        return WrittenTo::Nowhere;
     };
-    let is_plate = !model.groups.contains(what);
+    let rows = &model.campaign.measurements.rows;
+    let is_moved = |at: usize| at > row && sockets.contains(&rows[at].group);
+    let is_plate = sockets.len() > 1;
     extended.measurements.rename_groups(&is_moved, &format!("row {}", row + 2), is_plate);
     WrittenTo::Recording
 }
@@ -166,7 +160,7 @@ fn moved_observed(finding: &Finding) -> String {
     }
 }
 
-fn moved_event(location: &Location) -> Option<String> {
+pub(super) fn moved_event(location: &Location) -> Option<String> {
     match location {
         Location::Shift { what: Some(what), .. } => Some(format!("{what} moved")),
         other => Some(format!("{other} moved")),
@@ -199,20 +193,17 @@ pub(super) fn places_of_all(context: &Context) -> Vec<usize> {
 /// well.
 fn shifts(context: &Context, effect: &'static CalibrationEffect) -> Vec<Entry> {
     let groups = &context.recording.groups;
-    let is_fixture = context.has_sockets() || groups.len() > 1 || !groups[0].name.is_empty();
+    let is_fixture = context.has_sockets() || groups.len() > 1 || !groups[0].name.is_tracked();
     let mut fixtures: Vec<(String, Vec<usize>)> = Vec::new();
     if is_fixture {
-        fixtures.extend((0..groups.len()).map(|k| (groups[k].name.clone(), vec![k])));
+        fixtures.extend((0..groups.len()).map(|k| (groups[k].name.to_string(), vec![k])));
     }
     let mut plates: Vec<(String, Vec<usize>)> = Vec::new();
     if context.has_sockets() {
-        for (k, group) in groups.iter().enumerate() {
-            let Some((placement, _)) = group.name.rsplit_once('/') else { continue };
-            match plates.iter_mut().find(|(name, _)| name == placement) {
-                Some((_, members)) => members.push(k),
-                None => plates.push((placement.to_owned(), vec![k])),
-            }
-        }
+        let session = context.recording.session_by_group();
+        let members = |number: usize| (0..groups.len()).filter(|&k| session[k] == number).collect();
+        let names = context.recording.sessions().into_iter().map(GroupName::session);
+        plates.extend(names.enumerate().map(|(number, name)| (name, members(number))));
         // a plate of one socket is that socket
         plates.retain(|(_, members)| members.len() > 1);
     }
@@ -241,10 +232,10 @@ fn moved(
                 }
             })
         };
-        let mut columns = three(&SHIFT, UM, KNOCK.0, |axis| on(&|_| unit(axis)));
+        let mut columns = three(&SHIFT, KNOCK.0, |axis| on(&|_| unit(axis)));
         if turns {
             let turned = |axis: usize| on(&|there: &Configuration| unit(axis).cross(&(there.tip - middle)));
-            columns.extend(three(&TURN, URAD, PLATE, turned));
+            columns.extend(three(&TURN, PLATE, turned));
         }
         let row = rows[before - 1];
         // poses in sockets often have no names of their own
@@ -253,7 +244,7 @@ fn moved(
             false => context.pose_name(row),
         };
         let location = Location::Shift { what: Some(name.to_owned()), row, after };
-        Entry::new(&effect.effect, location, columns)
+        Entry::new(&effect.effect, location, columns).by(Law::Moved(members.to_vec()))
     };
     // a plate of which only one socket was visited from then on is that socket
     let group = |row: usize| context.recording.rows[row].group;
@@ -263,155 +254,4 @@ fn moved(
         members.len() > 1 && rows[*before..].iter().all(is_own) && rows[..*before].iter().any(is_own)
     };
     places(context, &rows).into_iter().filter(|before| !is_of_one(before)).map(after).collect()
-}
-
-/// A robot that moved on its base.
-pub static BASE_SHIFT: CalibrationEffect = CalibrationEffect {
-    effect: Effect {
-        name: "base_shift",
-        kind: Kind::Event,
-        summary: "the robot moved on its base after one pose",
-        formula: "t + φ × (ball − base) from some row on",
-        prior: "0.5 mm and 0.5 mrad: millimetres when one sees a knock, tenths when one does not",
-        parameters: &[
-            ("dx_um, dy_um, dz_um", "displacement of the base in {W}"),
-            ("rx_urad, ry_urad, rz_urad", "its rotation about the axes of {W}"),
-        ],
-        needs: "measured points (the points of sockets are unknown: there a moved plate stands for it)",
-        cause: "a slip of the robot on its base",
-        cause_at: |location| format!("a shift of the base ({location})"),
-        written_to: WrittenTo::Recording,
-        reported: Reported::Alone,
-        seen_along: |_| Vec::new(),
-        direct_check: None,
-    },
-    candidates: bases,
-    estimates: own_parameters,
-    observed: |finding, _| {
-        let by = size(finding, UM).say("µm");
-        format!("The robot moved on its base by {by} {}", finding.location)
-    },
-    write: out_of_the_points,
-    transfer: Transfer::Made(stays_moved),
-    event: |_| Some("the base moved".into()),
-};
-
-fn bases(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
-    if context.has_sockets() {
-        return Vec::new();
-    }
-    let count = context.configurations.len();
-    let after = |before: usize| {
-        let row = before - 1;
-        let location = Location::Shift { what: None, row, after: context.pose_name(row) };
-        base_moved(context, before..count, location)
-    };
-    places_of_all(context).into_iter().map(after).collect()
-}
-
-/// The robot on a base that is displaced at some rows.
-fn base_moved(context: &Context, rows: Range<usize>, location: Location) -> Entry {
-    let on = |displacement: &dyn Fn(&Configuration) -> Vector3<f64>| {
-        context.part(rows.clone(), |_, there| displacement(there))
-    };
-    let mut six = three(&SHIFT, UM, KNOCK.0, |axis| on(&|_| unit(axis)));
-    let turned = |axis: usize| on(&|there: &Configuration| unit(axis).cross(&(there.tip - there.origin[0])));
-    six.extend(three(&TURN, URAD, KNOCK.1, turned));
-    Entry::new(&BASE_SHIFT.effect, location, six)
-}
-
-/// The robot stands where it was moved to, whatever row that was after: also if a later pose has
-/// that one's name.
-fn stays_moved(context: &Context, candidate: &Candidate, _: &Law) -> Entry {
-    base_moved(context, 0..context.configurations.len(), candidate.location.clone())
-}
-
-/// A tool that slipped in its mount.
-pub static TOOL_SHIFT: CalibrationEffect = CalibrationEffect {
-    effect: Effect {
-        name: "tool_shift",
-        kind: Kind::Event,
-        summary: "the rod or tool slipped in its mount after one pose",
-        formula: "R·d from some row on: d = t + φ × ball in {T}, by how much the ball moved in {T}; a ball \
-                  alone does not show how much of it was a rotation φ",
-        prior: "0.5 mm: millimetres when one sees a knock, tenths when one does not",
-        parameters: &[
-            ("dx_um, dy_um, dz_um", "displacement of the ball in {T}"),
-            ("rotation_deg", "the least rotation about the flange that moves the ball so"),
-        ],
-        needs: "poses in the order of recording that hold the tool in different directions",
-        cause: "a slip of the rod or tool in its mount",
-        cause_at: |location| format!("a slip of the tool ({location})"),
-        written_to: WrittenTo::Recording,
-        reported: Reported::Alone,
-        seen_along: |_| Vec::new(),
-        direct_check: Some("Look whether the rod is tight in its mount."),
-    },
-    candidates: tools,
-    estimates: slipped,
-    observed: slip_observed,
-    write: out_of_the_points,
-    transfer: Transfer::Made(stays_slipped),
-    event: moved_event,
-};
-
-fn tools(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
-    let count = context.configurations.len();
-    let after = |before: usize| {
-        let row = before - 1;
-        let location = Location::Shift { what: Some("tool".into()), row, after: context.pose_name(row) };
-        tool_moved(context, before..count, location)
-    };
-    places_of_all(context).into_iter().map(after).collect()
-}
-
-/// The ball elsewhere in {T} at some rows.
-fn tool_moved(context: &Context, rows: Range<usize>, location: Location) -> Entry {
-    let along =
-        |axis: usize| context.part(rows.clone(), |_, there| there.flange.rotation.column(axis).into_owned());
-    Entry::new(&TOOL_SHIFT.effect, location, three(&SHIFT, UM, KNOCK.0, along))
-}
-
-/// The tool stays where it slipped to.
-fn stays_slipped(context: &Context, candidate: &Candidate, _: &Law) -> Entry {
-    tool_moved(context, 0..context.configurations.len(), candidate.location.clone())
-}
-
-/// The displacement, and the least rotation about the flange that does it: what of it is across the
-/// lever, over the lever.
-fn slipped(model: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
-    let mut estimates = own_parameters(model, parts);
-    let lever = model.calibration.setup.tool;
-    let (Some(part), Some(along)) = (parts.first(), lever.try_normalize(LEAST_LEVER)) else {
-        return estimates;
-    };
-    let &[x, y, z] = &part.term.values[..] else { return estimates };
-    let moved = Vector3::new(x, y, z);
-    let across = (moved - along * along.dot(&moved)) / lever.norm();
-    let angle = vector::length(across.as_slice());
-    // the gradient of its length has nothing along the lever
-    let turned = Length { gradient: angle.gradient / lever.norm(), ..angle };
-    let half = turned.half_interval(part);
-    estimates.push(Estimate {
-        name: "rotation_deg".into(),
-        unit: DEG,
-        value: turned.value,
-        low: (turned.value - half).max(0.0),
-        high: turned.value + half,
-    });
-    estimates
-}
-
-fn slip_observed(finding: &Finding, _: &CalibrationModel) -> String {
-    let by = size(finding, UM).say("µm");
-    let as_turn = match finding.estimates.get(3) {
-        Some(turn) => format!(", as by a rotation of {} in its mount", turn.quantity().say("°")),
-        None => String::new(),
-    };
-    match &finding.location {
-        Location::Shift { after, .. } => {
-            format!("The ball moved in the tool frame by {by} after {after}{as_turn}")
-        }
-        other => format!("The ball moved in the tool frame by {by}, {other}{as_turn}"),
-    }
 }

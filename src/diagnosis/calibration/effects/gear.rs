@@ -9,26 +9,26 @@
 //!
 //! Two cycles per revolution can be told apart over a range of ρ revolutions if they differ by 1/ρ
 //! or so; the scan has steps of half of that, of one half at most, up to 40; c and d reach what
-//! lies between. Beyond, only what gears in use have: a strain-wave gear of ratio i errs with i and
-//! 2·i cycles per revolution of its output, and the joint's motor with i.
+//! lies between. Beyond, only what gears in use have: a strain-wave gear of ratio i has errors of i
+//! and 2·i cycles per revolution of its output, and the joint's motor with i.
 
 use std::f64::consts::TAU;
 
+use super::super::model::CalibrationModel;
+use super::super::model::cosines::Cosines;
+use super::super::model::entry::{Column, linear};
+use super::super::model::gear::Gear;
+use super::super::model::law::Law;
+use super::super::write_back::correction_table::table;
 use super::{
     CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, capital, joint_by, law, no_event, nth,
 };
 use crate::calibration::campaign::Campaign;
-use crate::diagnosis::calibration::correction_table::table;
-use crate::diagnosis::calibration::cosines::Cosines;
-use crate::diagnosis::calibration::entry::{Column, linear};
-use crate::diagnosis::calibration::gear::Gear;
-use crate::diagnosis::calibration::law::Law;
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{
     Candidate, Effect, Estimate, Finding, FindingPart, JointVariable, Kind, NotTestable, Reported, WrittenTo,
 };
 use crate::robot;
-use crate::units::{URAD, significant};
+use crate::units::significant;
 
 /// Last frequency of the scan, cycles per revolution, and its widest step.
 const SCAN: (f64, f64) = (40.0, 0.5);
@@ -45,7 +45,7 @@ const CURVES: [f64; 5] = [2.0, 4.0, 8.0, 16.0, 32.0];
 /// there one of more than this many for every pose: it would go through them all.
 const MOST_COSINES: (usize, f64) = (160, 0.5);
 
-/// A gear or an encoder that errs with its joint's own angle.
+/// A gear or an encoder with an error over its joint's own angle.
 pub static TRANSMISSION_ERROR: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "transmission_error",
@@ -55,14 +55,16 @@ pub static TRANSMISSION_ERROR: CalibrationEffect = CalibrationEffect {
                   40 cycles per revolution, or a smooth curve of one of five length scales",
         prior: "150 µrad rms: a UR5 shows 60 to 110 µrad, a UR10 220 to 400",
         parameters: &[
-            ("cycles_per_rev", "frequency of the strongest wave"),
-            ("amplitude_urad", "its amplitude; of a curve, of a wave of the same rms"),
-            ("second_cycles_per_rev", "frequency of the next wave"),
-            ("second_amplitude_urad", "its amplitude"),
-            ("third_cycles_per_rev", "frequency of the third wave"),
-            ("third_amplitude_urad", "its amplitude"),
-            ("fourth_cycles_per_rev", "frequency of the fourth wave"),
-            ("fourth_amplitude_urad", "its amplitude"),
+            (&["cycles_per_rev"], "frequency of the strongest wave"),
+            (&["amplitude_urad"], "its amplitude; of a curve, of a wave of the same rms"),
+            (&["second_cycles_per_rev"], "frequency of the next wave"),
+            (&["second_amplitude_urad"], "its amplitude"),
+            (&["third_cycles_per_rev"], "frequency of the third wave"),
+            (&["third_amplitude_urad"], "its amplitude"),
+            (&["fourth_cycles_per_rev"], "frequency of the fourth wave"),
+            (&["fourth_amplitude_urad"], "its amplitude"),
+            (&["recorded_rms_urad"], "root mean square of the whole error over the recorded angles"),
+            (&["recorded_half_peak_to_peak_urad"], "half the way from its lowest value to its highest"),
         ],
         needs: "a joint that turns",
         cause: "an error of its gear or encoder",
@@ -117,8 +119,8 @@ fn harmonic(context: &Context, j: usize, cycles: f64) -> Entry {
     terms(context, gear, format!("{cycles} cycles/rev"), &["sin_urad", "cos_urad"])
 }
 
-/// An error and its first overtone: an eccentric disc that is read at one place errs with one and
-/// two cycles per revolution, a strain-wave gear with i and 2·i.
+/// An error and its first overtone: an eccentric disc that is read at one place has errors of one
+/// and two cycles per revolution, a strain-wave gear of i and 2·i.
 fn harmonics(context: &Context, j: usize, cycles_per_rev: [f64; 2]) -> Entry {
     let gear = Gear::Harmonics { joint: j, cycles_per_rev };
     let [n, m] = cycles_per_rev;
@@ -140,7 +142,7 @@ fn wave(context: &Context, j: usize, cycles: f64, half_step: f64) -> Entry {
 }
 
 fn terms(context: &Context, gear: Gear, form: String, names: &[&str]) -> Entry {
-    let parameter = |(k, name): (usize, &&str)| (linear(*name, URAD, JOINT_ANGLE), turned(context, &gear, k));
+    let parameter = |(k, name): (usize, &&str)| (linear(*name, JOINT_ANGLE), turned(context, &gear, k));
     let parameters = names.iter().enumerate().map(parameter).collect();
     let location = joint_by(gear.joint(), form);
     Entry::new(&TRANSMISSION_ERROR.effect, location, parameters).by(Law::Gear(gear))
@@ -164,7 +166,7 @@ fn curve(context: &Context, j: usize, cycles: f64) -> Option<Entry> {
     let sizes = cosines.sizes.clone();
     let gear = Gear::Curve { joint: j, cosines };
     let parameters = sizes.iter().enumerate().skip(1).map(|(k, size)| {
-        let parameter = linear(format!("cosine_{k}_urad"), URAD, JOINT_ANGLE * size);
+        let parameter = linear(format!("cosine_{k}_urad"), JOINT_ANGLE * size);
         (parameter, turned(context, &gear, k - 1))
     });
     let location = joint_by(j, format!("a smooth curve, scale {:.2}°", scale.to_degrees()));
@@ -214,7 +216,9 @@ fn observed(finding: &Finding, model: &CalibrationModel) -> String {
             _ => format!("of {amplitude}, {cycles}"),
         }
     };
-    let waves: Vec<String> = (0..finding.estimates.len() / 2).map(wave).collect();
+    let gears = finding.parts.iter().filter_map(|part| model.gear_of(part));
+    let count = gears.map(Gear::wave_count).sum::<usize>().min(NEXT.len());
+    let waves: Vec<String> = (0..count).map(wave).collect();
     format!("{named} has an angle error of {up_to} {}", waves.join(", and "))
 }
 
@@ -232,10 +236,10 @@ fn cycles(cycles: f64) -> String {
 
 /// With three digits, without zeros behind the point.
 fn three_digits(cycles: f64) -> String {
-    let said = significant(cycles, 3);
-    match said.contains('.') {
-        true => said.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => said,
+    let digits = significant(cycles, 3);
+    match digits.contains('.') {
+        true => digits.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => digits,
     }
 }
 

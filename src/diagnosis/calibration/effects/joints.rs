@@ -6,25 +6,23 @@
 
 use nalgebra::Vector3;
 
+use super::super::model::entry::{Column, linear};
+use super::super::model::law::{Law, Power};
+use super::super::model::{CalibrationModel, Configuration};
 use super::per_torque::per_torque;
 use super::{
     CalibrationEffect, Context, Entry, Transfer, along, capital, first, first_value, joint, joint_by, lack,
     law, no_event, nowhere, own_parameters, single,
 };
 use crate::calibration::campaign::Campaign;
-use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::entry::{Column, linear};
-use crate::diagnosis::calibration::law::{Law, Power};
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{
     Effect, Finding, JointVariable, Kind, Location, NotTestable, Parameter, Part, Reported, WrittenTo,
 };
 use crate::robot;
-use crate::units::{URAD, URAD_PER_NM};
 
-/// Angle by which a joint or a link yields to its largest torque beyond what is modelled, rad: a
-/// tenth to a half of what industrial drives yield by altogether (0.5 mrad).
-const YIELDING: f64 = 200e-6;
+/// Angle by which a joint or a link deflects under its largest torque beyond what is modelled, rad:
+/// a tenth to a half of what industrial drives deflect by altogether (0.5 mrad).
+const DEFLECTION: f64 = 200e-6;
 /// Torque relative to the robot's largest below which a joint counts as unloaded.
 const NO_TORQUE: f64 = 1e-3;
 /// Distance below which frames are at one point and weights have no lever, m.
@@ -41,7 +39,7 @@ pub(super) fn loaded(context: &Context) -> Vec<(usize, f64)> {
     context.revolute().into_iter().map(|j| (j, largest(j))).filter(is_loaded).collect()
 }
 
-/// A drive that yields to its load.
+/// A drive that is compliant.
 pub static JOINT_COMPLIANCE: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "joint_compliance",
@@ -51,9 +49,9 @@ pub static JOINT_COMPLIANCE: CalibrationEffect = CalibrationEffect {
         prior: "200 µrad at the largest torque: a tenth to a half of the whole deflection of \
                 industrial drives (0.5 mrad)",
         parameters: &[
-            ("compliance_urad_per_nm", "angle per torque, beyond the model"),
+            (&["compliance_urad_per_nm"], "angle per torque, beyond the model"),
             (
-                "joint_N_urad_per_m, flange_urad_per_m",
+                &["joint_N_urad_per_m", "flange_urad_per_m"],
                 "angle per metre of horizontal lever, by an \
                 unknown weight at that frame",
             ),
@@ -81,7 +79,7 @@ fn compliances(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
         return joints.filter_map(|j| compliance_without_masses(context, j)).collect();
     }
     let of_joint = |(j, largest): (usize, f64)| {
-        let compliance = linear("compliance_urad_per_nm", URAD_PER_NM, YIELDING / largest);
+        let compliance = linear("compliance_urad_per_nm", DEFLECTION / largest);
         single(&JOINT_COMPLIANCE, joint(j), compliance, context.turn(j, |_, there| there.torque[j]))
     };
     loaded.into_iter().map(of_joint).collect()
@@ -111,10 +109,10 @@ fn compliance_without_masses(context: &Context, j: usize) -> Option<Entry> {
             let largest = context.largest(arm);
             let name = frame.map_or("flange_urad_per_m".into(), |k| format!("joint_{}_urad_per_m", k + 1));
             let column = context.turn(j, |_, there| arm(there));
-            let mut yielding = linear(name, URAD, YIELDING / largest.max(ONE_POINT));
-            // drives yield with their torque, never against it
-            yielding.bounds.0 = 0.0;
-            (largest > ONE_POINT).then_some((frame, (yielding, column)))
+            let mut deflection = linear(name, DEFLECTION / largest.max(ONE_POINT));
+            // drives deflect with their torque, never against it
+            deflection.bounds.0 = 0.0;
+            (largest > ONE_POINT).then_some((frame, (deflection, column)))
         })
         .unzip();
     let location = joint_by(j, "masses unknown");
@@ -134,7 +132,8 @@ fn compliance_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Nonlinear(_)
         | Law::Rod(_)
         | Law::Drift(..)
-        | Law::Warms(..) => {
+        | Law::Warms(..)
+        | Law::Moved(_) => {
             let by = first(finding);
             let word = if by.value >= 0.0 { "more" } else { "less" };
             format!("{named} gives way by {} {word} than modelled", by.size().say("µrad/(N·m)"))
@@ -162,7 +161,7 @@ fn write_compliance(finding: &Finding, model: &CalibrationModel, extended: &mut 
     }
 }
 
-/// A drive that yields out of proportion to its load.
+/// A drive that deflects out of proportion to its load.
 pub static JOINT_NONLINEAR_STIFFNESS: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "joint_nonlinear_stiffness",
@@ -171,8 +170,8 @@ pub static JOINT_NONLINEAR_STIFFNESS: CalibrationEffect = CalibrationEffect {
         formula: "Jⱼ·k₂·τⱼ|τⱼ| or Jⱼ·k₃·τⱼ³",
         prior: "200 µrad at the largest torque, as joint_compliance",
         parameters: &[
-            ("urad_per_nm2", "angle per square of the torque"),
-            ("urad_per_nm3", "angle per third power of the torque"),
+            (&["urad_per_nm2"], "angle per square of the torque"),
+            (&["urad_per_nm3"], "angle per third power of the torque"),
         ],
         needs: "masses in the robot file, and a joint that they load",
         cause: "a stiffness that depends on the load",
@@ -197,8 +196,8 @@ fn nonlinear(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     }
     let of_joint = |(j, largest): (usize, f64)| {
         let turn = |angle: fn(f64) -> f64| context.turn(j, move |_, there| angle(there.torque[j]));
-        let quadratic = linear("urad_per_nm2", URAD, YIELDING / largest.powi(2));
-        let cubic = linear("urad_per_nm3", URAD, YIELDING / largest.powi(3));
+        let quadratic = linear("urad_per_nm2", DEFLECTION / largest.powi(2));
+        let cubic = linear("urad_per_nm3", DEFLECTION / largest.powi(3));
         let square = turn(|torque| torque * torque.abs());
         let cube = turn(|torque| torque.powi(3));
         [
@@ -220,7 +219,8 @@ fn nonlinear_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::MassesUnknown(_)
         | Law::Rod(_)
         | Law::Drift(..)
-        | Law::Warms(..) => ("µrad/(N·m)²", "the square of"),
+        | Law::Warms(..)
+        | Law::Moved(_) => ("µrad/(N·m)²", "the square of"),
     };
     format!("{} gives way with {power} its load, by {}", capital(&finding.location), first(finding).say(unit))
 }
@@ -234,7 +234,7 @@ pub static LINK_FLEXIBILITY: CalibrationEffect = CalibrationEffect {
         formula: "(k·M⊥) × (tip − oⱼ): M⊥ is the moment of all beyond the joint, without what acts \
                   about its axis",
         prior: "200 µrad at the largest moment, as joint_compliance",
-        parameters: &[("bending_urad_per_nm", "angle per moment")],
+        parameters: &[(&["bending_urad_per_nm"], "angle per moment")],
         needs: "masses in the robot file, and a joint that they load",
         cause: "a link that bends",
         cause_at: |location| format!("bending of the link before {location}"),
@@ -267,8 +267,8 @@ fn link(context: &Context, j: usize) -> Option<Entry> {
     let largest = context.largest(|there| across(&there.moment[j], &there.axis[j]).norm());
     let column = context
         .column(|_, there| across(&there.moment[j], &there.axis[j]).cross(&(there.tip - there.origin[j])));
-    let size = YIELDING / largest.max(f64::MIN_POSITIVE);
-    let bending = linear("bending_urad_per_nm", URAD_PER_NM, size);
+    let size = DEFLECTION / largest.max(f64::MIN_POSITIVE);
+    let bending = linear("bending_urad_per_nm", size);
     (largest > 0.0).then(|| single(&LINK_FLEXIBILITY, joint(j), bending, column))
 }
 
@@ -280,7 +280,7 @@ pub static GRAVITY_TILT: CalibrationEffect = CalibrationEffect {
         summary: "the base tilts under the arm's weight",
         formula: "φ × (tip − base): φ = k·(moment at the base, its horizontal part)",
         prior: "200 µrad at the largest moment, as joint_compliance",
-        parameters: &[("tilt_urad_per_nm", "angle per moment")],
+        parameters: &[(&["tilt_urad_per_nm"], "angle per moment")],
         needs: "masses in the robot file",
         cause: "a compliant base",
         cause_at: |_| "a base that tilts under the arm's weight".into(),
@@ -315,7 +315,7 @@ fn tilt(context: &Context) -> Option<Entry> {
     };
     let largest = context.largest(|there| moment(there).norm());
     let column = context.column(|_, there| moment(there).cross(&(there.tip - there.origin[0])));
-    let size = YIELDING / largest.max(f64::MIN_POSITIVE);
-    let tilting = linear("tilt_urad_per_nm", URAD_PER_NM, size);
+    let size = DEFLECTION / largest.max(f64::MIN_POSITIVE);
+    let tilting = linear("tilt_urad_per_nm", size);
     (largest > 0.0).then(|| single(&GRAVITY_TILT, Location::Part(Part::Base), tilting, column))
 }

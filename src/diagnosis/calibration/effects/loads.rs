@@ -6,18 +6,17 @@
 
 use nalgebra::Vector3;
 
+use super::super::model::entry::linear;
+use super::super::model::law::{Law, RodLoad};
+use super::super::model::{CalibrationModel, Configuration};
 use super::{
     CalibrationEffect, Context, Entry, Transfer, first, lack, law, no_event, nowhere, own_parameters, single,
     size,
 };
-use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::entry::linear;
-use crate::diagnosis::calibration::law::{Law, RodLoad};
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{
     Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Part, Reported, WrittenTo,
 };
-use crate::units::{DEG, GRAM};
+use crate::units::DEG;
 
 /// Share by which a rod is softer than its model.
 const SOFTNESS: f64 = 0.27;
@@ -38,7 +37,7 @@ pub static ROD_STIFFNESS: CalibrationEffect = CalibrationEffect {
                   compensated, Δx the model's deflection under all loads or under one of them",
         prior: "27 % of deflection: 1 − 1/r is 0.27 rms over the r_rod of the paper's six rods; all \
                 of it where the rod was assumed rigid",
-        parameters: &[("factor", "s: stiffness over that of the model")],
+        parameters: &[(&["factor"], "s: stiffness over that of the model")],
         needs: "a rod in the campaign",
         cause: "a rod stiffness that differs from its model",
         cause_at: |_| "a rod of another stiffness".into(),
@@ -64,9 +63,9 @@ fn rods(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         return Vec::new();
     }
     let under = |load: RodLoad| {
-        let mut factor = linear("factor", 1.0, SOFTNESS);
+        let mut factor = linear("factor", SOFTNESS);
         factor.neutral = context.accounted;
-        // a rod that was taken for rigid bends by all of its model
+        // a rod that was assumed rigid bends by all of its model
         factor.size = factor.size.max(1.0 - context.accounted);
         factor.bounds = (0.0, 10.0);
         let column = context.column(|row, _| {
@@ -77,9 +76,9 @@ fn rods(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
                 RodLoad::Weight => by_weight,
             }
         });
-        let location = match load.words() {
+        let location = match load.description() {
             None => Location::Part(Part::Rod),
-            Some(words) => Location::Form { part: Part::Rod, form: words.into() },
+            Some(load) => Location::Form { part: Part::Rod, form: load.into() },
         };
         single(&ROD_STIFFNESS, location, factor, column).by(Law::Rod(load))
     };
@@ -101,14 +100,15 @@ fn stiffness(_: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
 
 fn rod_observed(finding: &Finding, model: &CalibrationModel) -> String {
     let under = match law(finding, model) {
-        Law::Rod(load) => load.words(),
+        Law::Rod(load) => load.description(),
         Law::Only
         | Law::Gear(_)
         | Law::Play(_)
         | Law::Nonlinear(_)
         | Law::MassesUnknown(_)
         | Law::Drift(..)
-        | Law::Warms(..) => None,
+        | Law::Warms(..)
+        | Law::Moved(_) => None,
     };
     let under = under.map_or_else(String::new, |under| format!(" {under}"));
     let softer = first(finding).map(|stiffness| 1.0 / stiffness).compared("softer", "stiffer");
@@ -123,7 +123,7 @@ fn heavier(finding: &Finding, unit: &str) -> String {
 
 /// Displacement of the tip by one more force on it, m: the rod bends and the joints give way.
 pub(super) fn pulled(context: &Context, there: &Configuration, force: &Vector3<f64>) -> Vector3<f64> {
-    there.in_world(&context.force_compliance) * force + there.yielding(&there.tip, force)
+    there.in_world(&context.force_compliance) * force + there.joint_deflection(&there.tip, force)
 }
 
 /// True where something is known to give way to a force on the tip.
@@ -143,7 +143,7 @@ pub static TIP_MASS: CalibrationEffect = CalibrationEffect {
         summary: "a mass at the tip that the files do not state",
         formula: "R·C^F·Rᵀ·(m·g) + yield(tip, m·g)",
         prior: "50 g: the paper's ball and holder have 55 g",
-        parameters: &[("mass_g", "mass beyond the stated one")],
+        parameters: &[(&["mass_g"], "mass beyond the stated one")],
         needs: "a rod or joints of known compliance",
         cause: "a mass that the files do not state",
         cause_at: |_| "a mass at the tip".into(),
@@ -166,7 +166,7 @@ fn tip_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         return Vec::new();
     }
     let column = context.column(|_, there| pulled(context, there, &there.gravity));
-    let mut mass = linear("mass_g", GRAM, FORGOTTEN_AT_TIP);
+    let mut mass = linear("mass_g", FORGOTTEN_AT_TIP);
     // no less can hang there than nothing
     mass.bounds.0 = -context.modelled_mass.0;
     vec![single(&TIP_MASS, Location::Part(Part::Tip), mass, column)]
@@ -180,7 +180,7 @@ pub static PAYLOAD_MASS: CalibrationEffect = CalibrationEffect {
         summary: "a mass at the flange that the files do not state",
         formula: "yield(flange, m·g)",
         prior: "0.5 kg: an adapter, a cable",
-        parameters: &[("mass_kg", "mass beyond the stated one")],
+        parameters: &[(&["mass_kg"], "mass beyond the stated one")],
         needs: "joints of known compliance",
         cause: "a mass that the files do not state",
         cause_at: |_| "a mass on the flange".into(),
@@ -202,8 +202,8 @@ fn payload_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry>
         lacks.push(lack(&PAYLOAD_MASS, "no joint has a known compliance"));
         return Vec::new();
     }
-    let column = context.column(|_, there| there.yielding(&there.flange.origin, &there.gravity));
-    let mut mass = linear("mass_kg", 1.0, FORGOTTEN_AT_FLANGE);
+    let column = context.column(|_, there| there.joint_deflection(&there.flange.origin, &there.gravity));
+    let mut mass = linear("mass_kg", FORGOTTEN_AT_FLANGE);
     mass.bounds.0 = -context.modelled_mass.1;
     vec![single(&PAYLOAD_MASS, Location::Part(Part::Flange), mass, column)]
 }
@@ -218,8 +218,8 @@ pub static GRAVITY_DIRECTION: CalibrationEffect = CalibrationEffect {
                   moment of all that hangs beyond joint j",
         prior: "0.5°: a foot that was set up without a level",
         parameters: &[
-            ("roll_deg", "rotation of gravity about x of the base"),
-            ("pitch_deg", "rotation of gravity about y of the base"),
+            (&["roll_deg"], "rotation of gravity about x of the base"),
+            (&["pitch_deg"], "rotation of gravity about y of the base"),
         ],
         needs: "a rod, or masses in the robot file and joints of known compliance",
         cause: "a base that does not stand level",
@@ -251,9 +251,9 @@ fn levels(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let about = |(axis, name): (usize, &str)| {
         let column = context.column(|_, there| {
             let turned = there.base.rotation.column(axis).cross(&there.gravity);
-            there.in_world(&context.weight_compliance) * turned + there.yielding_to_weight(&turned)
+            there.in_world(&context.weight_compliance) * turned + there.joint_deflection_by_weight(&turned)
         });
-        (linear(name, DEG, LEVEL), column)
+        (linear(name, LEVEL), column)
     };
     let parameters = ["roll_deg", "pitch_deg"].into_iter().enumerate().map(about).collect();
     vec![Entry::new(&GRAVITY_DIRECTION.effect, Location::Part(Part::Base), parameters)]

@@ -2,8 +2,8 @@
 //! as the masses of the links. A number per p-th power of the torque is known to p·ρ at best, ρ the
 //! torque's relative standard uncertainty (`torque_uncertainty.rs`).
 
-use crate::diagnosis::calibration::law::{Law, Power};
-use crate::diagnosis::calibration::model::CalibrationModel;
+use super::super::model::CalibrationModel;
+use super::super::model::law::{Law, Power};
 use crate::inference::{Estimate, FindingPart};
 
 /// Half of a 95 % interval in standard deviations.

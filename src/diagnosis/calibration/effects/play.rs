@@ -1,5 +1,8 @@
 //! What a joint keeps of the way that it came: play and friction.
 
+use super::super::model::CalibrationModel;
+use super::super::model::entry::linear;
+use super::super::model::law::{Law, TakenUp};
 use super::joints::{NO_MASSES, loaded};
 use super::per_torque::per_torque;
 use super::{
@@ -7,12 +10,8 @@ use super::{
     joint_by, lack, law, no_event, own_parameters, single,
 };
 use crate::calibration::campaign::Campaign;
-use crate::diagnosis::calibration::entry::linear;
-use crate::diagnosis::calibration::law::{Law, TakenUp};
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{Effect, Finding, JointVariable, Kind, NotTestable, Reported, WrittenTo};
 use crate::robot;
-use crate::units::{URAD, URAD_PER_NM};
 
 /// Play of a gear.
 pub static BACKLASH: CalibrationEffect = CalibrationEffect {
@@ -23,7 +22,7 @@ pub static BACKLASH: CalibrationEffect = CalibrationEffect {
         formula: "Jⱼ·½b·sign(τⱼ) or, where friction holds the joint, Jⱼ·½b·(direction of approach)",
         prior: "150 µrad: the error of a joint angle that a UR5 shows (60 to 110 µrad), and half of \
                 a UR10's",
-        parameters: &[("play_urad", "the whole gap")],
+        parameters: &[(&["play_urad"], "the whole gap")],
         needs: "masses in the robot file and a joint whose torque changes sign; for play by approach, \
                 rows in the order of recording",
         cause: "play in its gear",
@@ -45,7 +44,7 @@ pub static BACKLASH: CalibrationEffect = CalibrationEffect {
 };
 
 fn plays(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
-    let play = || linear("play_urad", URAD, JOINT_ANGLE);
+    let play = || linear("play_urad", JOINT_ANGLE);
     let loaded = loaded(context);
     if loaded.is_empty() {
         lacks.push(lack(&BACKLASH, NO_MASSES));
@@ -72,7 +71,8 @@ fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::MassesUnknown(_)
         | Law::Rod(_)
         | Law::Drift(..)
-        | Law::Warms(..) => "taken up on the side that its load pulls to",
+        | Law::Warms(..)
+        | Law::Moved(_) => "taken up on the side that its load pulls to",
     };
     let play = first(finding).size().say("µrad");
     format!("{} has {play} of play, {by}", capital(&finding.location))
@@ -104,7 +104,7 @@ pub static JOINT_FRICTION: CalibrationEffect = CalibrationEffect {
         formula: "Jⱼ·½h·|τⱼ|·(direction of approach): what play by approach does, but as large as the load \
                   is; friction that does not grow with it is the same as play",
         prior: "150 µrad at the largest torque, as backlash",
-        parameters: &[("urad_per_nm", "h: angle between the two directions of approach, per torque")],
+        parameters: &[(&["urad_per_nm"], "h: angle between the two directions of approach, per torque")],
         needs: "masses in the robot file, a joint that they load, rows in the order of recording",
         cause: "friction in its drive",
         cause_at: |location| format!("friction in the drive of {}", location.place()),
@@ -127,7 +127,7 @@ fn frictions(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         lacks.push(lack(&JOINT_FRICTION, NO_MASSES));
     }
     let of_joint = |(j, largest): (usize, f64)| {
-        let wound = linear("urad_per_nm", URAD_PER_NM, JOINT_ANGLE / largest);
+        let wound = linear("urad_per_nm", JOINT_ANGLE / largest);
         let column = context.turn(j, |_, there| 0.5 * there.torque[j].abs() * there.approach[j]);
         single(&JOINT_FRICTION, joint(j), wound, column)
     };

@@ -2,15 +2,14 @@
 
 use nalgebra::Vector3;
 
+use super::super::model::entry::{Column, linear};
+use super::super::model::law::{Course, Frame, Law, Warmed};
+use super::super::model::{CalibrationModel, Configuration};
 use super::{
     CalibrationEffect, Context, Entry, Transfer, along, first, first_value, joint, joint_by, lack, law,
     no_event, out_of_the_points, own_parameters, single, size, three, unit,
 };
 use crate::calibration::campaign::{Campaign, Row};
-use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::entry::{Column, linear};
-use crate::diagnosis::calibration::law::{Course, Frame, Law, Warmed};
-use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::inference::{
     Effect, Finding, JointVariable, Kind, Location, NotTestable, Part, Reported, Variable, WrittenTo,
 };
@@ -41,7 +40,7 @@ pub static READBACK_LAG: CalibrationEffect = CalibrationEffect {
         formula: "Σ Jⱼ·f·(qⱼ − qⱼ before): f is the share of the last move that was still to come \
                   when q was read; of one joint, or of all with one share",
         prior: "3e-4: 100 to 1000 µrad of a move of 1 rad",
-        parameters: &[("fraction", "share of the last move that was still to come")],
+        parameters: &[(&["fraction"], "share of the last move that was still to come")],
         needs: "rows in the order of recording",
         cause: "angles were read before the arm had settled",
         cause_at: |location| format!("angles read before the arm had settled ({location})"),
@@ -59,7 +58,7 @@ pub static READBACK_LAG: CalibrationEffect = CalibrationEffect {
 };
 
 fn lags(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
-    let fraction = || linear("fraction", 1.0, LAG);
+    let fraction = || linear("fraction", LAG);
     let joints: Vec<usize> = (0..context.joint_count()).collect();
     let of_all =
         context.column(|_, there| joints.iter().map(|&j| there.tip_jacobian[j] * there.step[j]).sum());
@@ -102,12 +101,12 @@ pub static THERMAL_DRIFT: CalibrationEffect = CalibrationEffect {
                 starts a recording some 60 µm off); of a joint as many µrad, of a link as many µm, of \
                 the arm as many µm/m",
         parameters: &[
-            ("x_um_per_k, y_um_per_k, z_um_per_k", "displacement per kelvin"),
-            ("x_um_per_h, y_um_per_h, z_um_per_h", "displacement per hour"),
-            ("x_um, y_um, z_um", "displacement over the recording, or of the cold robot"),
-            ("zero_urad_per_k, zero_urad_per_h, zero_urad", "the same of a joint's zero"),
-            ("length_um_per_k, length_um_per_h, length_um", "the same of a link's length"),
-            ("growth_um_per_m_per_k, growth_um_per_m_per_h, growth_um_per_m", "growth of all links"),
+            (&["x_um_per_k", "y_um_per_k", "z_um_per_k"], "displacement per kelvin"),
+            (&["x_um_per_h", "y_um_per_h", "z_um_per_h"], "displacement per hour"),
+            (&["x_um", "y_um", "z_um"], "displacement over the recording, or of the cold robot"),
+            (&["zero_urad_per_k", "zero_urad_per_h", "zero_urad"], "the same of a joint's zero"),
+            (&["length_um_per_k", "length_um_per_h", "length_um"], "the same of a link's length"),
+            (&["growth_um_per_m_per_k", "growth_um_per_m_per_h", "growth_um_per_m"], "growth of all links"),
         ],
         needs: "temperatures or times of the rows; without them only the order of the rows",
         cause: "thermal drift",
@@ -135,12 +134,12 @@ fn drifts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         lacks.push(lack(&THERMAL_DRIFT, reason));
     }
     let of_course = |(course, values): (Course, Vec<f64>)| {
-        let (suffix, _, unit_si) = course.unit();
+        let (suffix, _) = course.unit();
         let names = ["x", "y", "z"].map(|axis| format!("{axis}_{suffix}"));
         let drifting = |frame: Frame, along: &dyn Fn(&Configuration, usize) -> Vector3<f64>| {
             let column = |axis: usize| context.column(|row, there| along(there, axis) * values[row]);
             let names = [0, 1, 2].map(|axis| names[axis].as_str());
-            let parameters = three(&names, unit_si, usual(course), column);
+            let parameters = three(&names, usual(course), column);
             let location = Location::Form { part: frame.part(), form: format!("with {course}") };
             Entry::new(&THERMAL_DRIFT.effect, location, parameters).by(Law::Drift(course, frame))
         };
@@ -157,10 +156,10 @@ fn drifts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
 
 /// All links grow by one share, as of one material that is warm throughout: (flange − base)·d.
 fn of_arm(context: &Context, course: Course, values: &[f64]) -> Entry {
-    let (suffix, _, unit_si) = course.share_unit();
+    let (suffix, _) = course.share_unit();
     let column = context.column(|row, there| (there.flange.origin - there.origin[0]) * values[row]);
     let location = Location::Form { part: Part::Arm, form: Warmed::Arm.form(course) };
-    let parameter = linear(format!("growth_{suffix}"), unit_si, usual(course));
+    let parameter = linear(format!("growth_{suffix}"), usual(course));
     single(&THERMAL_DRIFT, location, parameter, column).by(Law::Warms(course, Warmed::Arm))
 }
 
@@ -168,28 +167,28 @@ fn of_arm(context: &Context, course: Course, values: &[f64]) -> Entry {
 fn of_joints(context: &Context, course: Course, values: &[f64]) -> Vec<Entry> {
     let joints = context.revolute();
     let weight = 1.0 / joints.len().max(1) as f64;
-    let entry = |j: usize, warmed: Warmed, name: String, unit_si: f64, column: Column| {
+    let entry = |j: usize, warmed: Warmed, name: String, column: Column| {
         let location = joint_by(j, warmed.form(course));
-        let parameter = linear(name, unit_si, usual(course));
+        let parameter = linear(name, usual(course));
         let mut entry = single(&THERMAL_DRIFT, location, parameter, column).by(Law::Warms(course, warmed));
         // all joints together are as likely as the whole robot
         entry.candidate.weight = weight;
         entry
     };
     let zero = |j: usize| {
-        let (suffix, _, unit_si) = course.angle_unit();
+        let (suffix, _) = course.angle_unit();
         let column = context.turn(j, |row, _| values[row]);
-        entry(j, Warmed::Zero, format!("zero_{suffix}"), unit_si, column)
+        entry(j, Warmed::Zero, format!("zero_{suffix}"), column)
     };
     let length = |j: usize| {
-        let (suffix, _, unit_si) = course.unit();
+        let (suffix, _) = course.unit();
         let next = |there: &Configuration| there.origin.get(j + 1).copied().unwrap_or(there.flange.origin);
         let is_long = context.largest(|there| (next(there) - there.origin[j]).norm()) > LEAST_LINK;
         let column = context.column(|row, there| {
             let along = (next(there) - there.origin[j]).try_normalize(0.0).unwrap_or_default();
             along * values[row]
         });
-        is_long.then(|| entry(j, Warmed::Length, format!("length_{suffix}"), unit_si, column))
+        is_long.then(|| entry(j, Warmed::Length, format!("length_{suffix}"), column))
     };
     joints.iter().flat_map(|&j| [Some(zero(j)), length(j)]).flatten().collect()
 }
@@ -236,11 +235,11 @@ fn courses(context: &Context) -> Vec<(Course, Vec<f64>)> {
 }
 
 fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
-    let unit_si = finding.estimates.first().map_or(1.0, |estimate| estimate.unit);
-    let size = size(finding, unit_si);
+    let si = finding.estimates.first().map_or(1.0, |estimate| estimate.unit.si);
+    let size = size(finding, si);
     match law(finding, model) {
         Law::Drift(course, frame) => {
-            let (_, unit, _) = course.unit();
+            let (_, unit) = course.unit();
             format!("The {} drifts by {} with {course}", frame.part(), size.say(unit))
         }
         Law::Warms(course, Warmed::Zero) => {
@@ -255,7 +254,13 @@ fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
             let by = first(finding).say(course.share_unit().1);
             format!("The arm grows by {by} with {course}, all its links alike")
         }
-        Law::Only | Law::Gear(_) | Law::Play(_) | Law::Nonlinear(_) | Law::MassesUnknown(_) | Law::Rod(_) => {
+        Law::Only
+        | Law::Gear(_)
+        | Law::Play(_)
+        | Law::Nonlinear(_)
+        | Law::MassesUnknown(_)
+        | Law::Rod(_)
+        | Law::Moved(_) => {
             format!("Drift by {} at {}", size.say("µm"), finding.location)
         }
     }

@@ -1,16 +1,17 @@
 //! The list of all effects of a calibration: the only source of their names.
 
+use super::super::model::law::{Law, TakenUp};
 use super::contact::{CONTACT_FORCE_VARIATION, CONTACT_SPRING};
 use super::encoders::{ENCODER_SCALE, WRIST_COUPLING};
 use super::events::{JOINT_SHIFT, OUTLIER};
-use super::fixture::{BASE_SHIFT, CLAMP_POSE, CLAMP_SHIFT, SOCKET_SHIFT, TOOL_SHIFT};
+use super::fixture::{CLAMP_POSE, CLAMP_SHIFT, SOCKET_SHIFT};
 use super::gear::TRANSMISSION_ERROR;
 use super::joints::{GRAVITY_TILT, JOINT_COMPLIANCE, JOINT_NONLINEAR_STIFFNESS, LINK_FLEXIBILITY};
 use super::loads::{GRAVITY_DIRECTION, PAYLOAD_MASS, ROD_STIFFNESS, TIP_MASS};
+use super::mounting::{BASE_SHIFT, TOOL_SHIFT};
 use super::play::{BACKLASH, JOINT_FRICTION};
 use super::procedure::{READBACK_LAG, THERMAL_DRIFT};
 use super::{CalibrationEffect, Context, Entry, mistakes};
-use crate::diagnosis::calibration::law::{Law, TakenUp};
 use crate::inference::{Effect, NotTestable};
 
 /// All of them, as they are listed wherever they are.

@@ -4,7 +4,7 @@ use super::super::effects::mistakes::{COPIED_COLUMN, STUCK_SENSOR};
 use super::draft::Draft;
 use super::names::{AXES, column};
 use crate::calibration::campaign::Campaign;
-use crate::inference::{Effect, Estimate};
+use crate::inference::{Effect, Estimate, Key};
 use crate::robot::Motion;
 use crate::units::{DEG, MM, significant};
 
@@ -16,12 +16,20 @@ const SAME: f64 = 1e-12;
 /// Something that is said of a column, and cannot be undone.
 pub(super) struct Silent {
     pub effect: &'static Effect,
-    pub location: String,
+    pub location: Key,
     pub estimates: Vec<Estimate>,
     pub cure: String,
     pub why: String,
+    /// Ln of the odds that so many numbers do not agree by chance.
+    pub log_odds: f64,
     /// A joint that does not move may be meant not to: it counts where the fit fails.
     pub only_if_failed: bool,
+}
+
+/// Ln of the odds against the chance that so many numbers agree with others to the last digit,
+/// which each of them does once in ten times.
+pub(super) fn agreement(numbers: usize) -> f64 {
+    numbers as f64 * std::f64::consts::LN_10
 }
 
 /// All columns that do not change, or stand twice.
@@ -56,17 +64,22 @@ fn positions(draft: &Draft) -> Vec<Silent> {
     if still.len() == 3 {
         let is_zero = still.iter().all(|&axis| shown(axis) == 0.0);
         let what = if is_zero { "all of them are zero" } else { "they are the same in all rows" };
-        all.push(stuck("x_mm, y_mm, z_mm".into(), Vec::new(), "x_mm, y_mm and z_mm", what.into(), false));
+        let location = Key::new(AXES.join(", "));
+        let log_odds = agreement(3 * (draft.len() - 1));
+        all.push(Silent {
+            log_odds,
+            ..stuck(location, Vec::new(), "x_mm, y_mm and z_mm", what.into(), draft.len())
+        });
     } else {
         for axis in still {
             let value = shown(axis);
-            let estimate = Estimate { name: "mm".into(), unit: 1.0, value, low: value, high: value };
+            let estimate = Estimate::as_written("mm", value, value, value);
             let what = format!("it is {} mm in all rows", significant(value, 4));
-            all.push(stuck(names[axis].into(), vec![estimate], names[axis], what, false));
+            all.push(stuck(Key::new(names[axis]), vec![estimate], names[axis], what, draft.len()));
         }
         for (a, b) in [(0, 1), (0, 2), (1, 2)] {
             if are_same(&columns[a], &columns[b]) && !is_constant(&columns[a]) {
-                all.push(copied(names[a], names[b]));
+                all.push(copied(names[a], names[b], draft.len()));
             }
         }
     }
@@ -87,39 +100,36 @@ fn joints(campaign: &Campaign, draft: &Draft) -> Vec<Silent> {
                 Motion::Prismatic => (MM, " mm", "mm"),
             };
             let value = columns[a][0] / unit;
-            let estimate = Estimate { name: key.into(), unit: 1.0, value, low: value, high: value };
+            let estimate = Estimate::as_written(key, value, value, value);
             let what =
                 format!("it is {}{symbol} in all rows, and the poses do not fit", significant(value, 4));
-            all.push(stuck(name(a), vec![estimate], &name(a), what, true));
+            let still = stuck(Key::new(name(a)), vec![estimate], &name(a), what, draft.len());
+            all.push(Silent { only_if_failed: true, ..still });
             continue;
         }
         for b in a + 1..count {
             if are_same(&columns[a], &columns[b]) {
-                all.push(copied(&name(a), &name(b)));
+                all.push(copied(&name(a), &name(b), draft.len()));
             }
         }
     }
     all
 }
 
-fn stuck(
-    location: String,
-    estimates: Vec<Estimate>,
-    what: &str,
-    why: String,
-    only_if_failed: bool,
-) -> Silent {
+fn stuck(location: Key, estimates: Vec<Estimate>, what: &str, why: String, rows: usize) -> Silent {
     let cure = format!("Record {what} once more");
-    Silent { effect: &STUCK_SENSOR, location, estimates, cure, why, only_if_failed }
+    let log_odds = agreement(rows - 1);
+    Silent { effect: &STUCK_SENSOR, location, estimates, cure, why, log_odds, only_if_failed: false }
 }
 
-fn copied(first: &str, second: &str) -> Silent {
+fn copied(first: &str, second: &str, rows: usize) -> Silent {
     Silent {
         effect: &COPIED_COLUMN,
-        location: format!("{first} and {second}"),
+        location: Key::new(format!("{first} and {second}")),
         estimates: Vec::new(),
         cure: format!("Put the right numbers into {first} or {second}"),
         why: "both columns hold the same".into(),
+        log_odds: agreement(rows),
         only_if_failed: false,
     }
 }

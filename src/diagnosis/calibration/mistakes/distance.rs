@@ -6,7 +6,7 @@
 
 use super::Mended;
 use super::moves::exact;
-use super::search::{Search, State};
+use super::search::{FittedDraft, MistakeSearch};
 use crate::calibration::campaign::{Distance, Recording, Targets};
 use crate::diagnosis::calibration::effects::mistakes::{DISTANCE_MISTAKE, UNIT_MISTAKE};
 use crate::inference::{Estimate, Location};
@@ -41,7 +41,7 @@ struct Measured {
 
 impl Mended {
     /// The distance of the sockets, where poses and drawing contradict the one stated.
-    pub(super) fn add_distance(&mut self, search: &Search, best: &State) {
+    pub(super) fn add_distance(&mut self, search: &MistakeSearch, best: &FittedDraft) {
         if search.has_failed(best) {
             return;
         }
@@ -54,32 +54,27 @@ impl Mended {
         }
         let fits = |factor: f64| (stated.value * factor - value).abs() < SURE * sd.hypot(stated.sd);
         let half = COVERAGE * sd;
-        let (said, uncertain) = (significant(value / MM, 4), significant(half / MM, 2));
+        let (digits, uncertain) = (significant(value / MM, 4), significant(half / MM, 2));
         let number = (stated.value / MM * 1e6).round() / 1e6;
-        let there = format!("by angles and drawing the sockets are {said} ± {uncertain} mm apart");
+        let there = format!("by angles and drawing the sockets are {digits} ± {uncertain} mm apart");
         let key = Location::key(KEY);
+        let log_odds = -chi_squared_survival(z * z, 1.0).unwrap_or(0.0).ln();
         let meant = match UNITS.iter().find(|(factor, _)| fits(*factor)) {
             Some((factor, unit)) => {
                 let cure = format!("Multiply {KEY} by {factor}");
                 let why = format!("it is in {unit}, not in millimetres ({there})");
-                self.add(&UNIT_MISTAKE, key, exact("factor", *factor), &cure, &why);
+                self.add(&UNIT_MISTAKE, key, exact("factor", *factor), (&cure, &why), log_odds);
                 Distance { value: stated.value * factor, ..stated }
             }
             None => {
-                let estimate = Estimate {
-                    name: "mm".into(),
-                    unit: 1.0,
-                    value: value / MM,
-                    low: (value - half) / MM,
-                    high: (value + half) / MM,
-                };
-                let cure = format!("Write {said} for {number} as {KEY}");
-                self.add(&DISTANCE_MISTAKE, key, vec![estimate], &cure, &there);
+                let (low, high) = ((value - half) / MM, (value + half) / MM);
+                let estimate = Estimate::as_written("mm", value / MM, low, high);
+                let cure = format!("Write {digits} for {number} as {KEY}");
+                self.add(&DISTANCE_MISTAKE, key, vec![estimate], (&cure, &there), log_odds);
                 Distance { value, sd, ..stated }
             }
         };
         if let Some(finding) = self.found.last_mut() {
-            finding.p_value = chi_squared_survival(z * z, 1.0).unwrap_or(0.0);
             // each socket is half of it off, in a direction that nobody knows
             finding.explains = off / 12.0f64.sqrt();
             finding.next = finding.direct_check(&[]);
@@ -94,7 +89,7 @@ impl Mended {
 }
 
 /// The middle of the placements, where most of them agree.
-fn measured(recording: &Recording, search: &Search, best: &State) -> Option<Measured> {
+fn measured(recording: &Recording, search: &MistakeSearch, best: &FittedDraft) -> Option<Measured> {
     let Targets::Sockets(distances) = &recording.targets else { return None };
     let stated = *distances.first()?;
     let draft = search.changed(&best.steps);

@@ -1,5 +1,7 @@
 //! A campaign as bare numbers, so that it can be read in another way than its files say.
 
+mod displaced;
+
 use nalgebra::{Matrix3, Vector3};
 
 use crate::calibration::campaign::{Campaign, Recording, Station, Targets};
@@ -32,12 +34,12 @@ pub(super) struct Draft {
     /// Clamps whose place is free.
     pub loose: Vec<usize>,
     /// Changes of the angles, in their order: the validation has them too.
-    pub joint_changes: Vec<Change>,
+    pub joint_changes: Vec<DraftChange>,
 }
 
 /// What undoes a mistake.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Change {
+pub(super) enum DraftChange {
     /// true joint j = factor[j]·recorded[order[j]] + offset[j].
     Joints { order: Vec<usize>, factor: Vec<f64>, offset: Vec<f64> },
     /// true position = M·recorded.
@@ -61,13 +63,13 @@ pub(super) enum Change {
     /// The place of a clamp is the one that its poses say.
     Placed(usize),
     /// Another change, of some rows alone.
-    Within(Rows, Box<Change>),
+    Within(Rows, Box<DraftChange>),
     /// true joint = recorded + by, an angle (or a length) that the poses must say.
     Zero { joint: usize, by: f64 },
     /// The number of row i is the one that stands in row i + k.
-    Column { of: Cell, by: isize },
+    Column { cell: Cell, by: isize },
     /// Another number in one row of the recording, rad or m.
-    Number { row: usize, of: Cell, value: f64 },
+    Number { row: usize, cell: Cell, value: f64 },
     /// Rows of the recording that are left out.
     Without(Vec<usize>),
 }
@@ -98,21 +100,21 @@ pub(super) enum Cell {
     Axis(usize),
 }
 
-impl Change {
+impl DraftChange {
     /// True where only a first guess is another one, which no fit depends on.
     pub fn is_guess(&self) -> bool {
-        matches!(self, Change::Base(_) | Change::Tool(_))
+        matches!(self, DraftChange::Base(_) | DraftChange::Tool(_))
     }
 
     /// True where some rows get a frame of their own.
     pub fn adds_station(&self) -> bool {
-        matches!(self, Change::Moved(_) | Change::Apart(_))
+        matches!(self, DraftChange::Moved(_) | DraftChange::Apart(_))
     }
 
     /// A factor on some joints.
-    pub fn factors(joints: &[usize], count: usize, factor: f64) -> Change {
+    pub fn factors(joints: &[usize], count: usize, factor: f64) -> DraftChange {
         let factor = (0..count).map(|j| if joints.contains(&j) { factor } else { 1.0 }).collect();
-        Change::Joints { order: (0..count).collect(), factor, offset: vec![0.0; count] }
+        DraftChange::Joints { order: (0..count).collect(), factor, offset: vec![0.0; count] }
     }
 
     /// True for an offset of joint 1 and nothing else.
@@ -123,8 +125,8 @@ impl Change {
     /// The joint of which nothing but the zero is another one.
     pub fn joint_of_zero(&self) -> Option<usize> {
         match self {
-            Change::Zero { joint, .. } => Some(*joint),
-            Change::Joints { order, factor, offset } => {
+            DraftChange::Zero { joint, .. } => Some(*joint),
+            DraftChange::Joints { order, factor, offset } => {
                 let is_plain = order.iter().enumerate().all(|(joint, from)| joint == *from)
                     && factor.iter().all(|factor| *factor == 1.0);
                 let mut off = (0..offset.len()).filter(|joint| offset[*joint] != 0.0);
@@ -135,16 +137,20 @@ impl Change {
     }
 
     /// A constant on one joint, rad, after a factor.
-    pub fn offset(joint: usize, count: usize, factor: f64, angle: f64) -> Change {
+    pub fn offset(joint: usize, count: usize, factor: f64, angle: f64) -> DraftChange {
         let only =
             |value: f64, other: f64| (0..count).map(|j| if j == joint { value } else { other }).collect();
-        Change::Joints { order: (0..count).collect(), factor: only(factor, 1.0), offset: only(angle, 0.0) }
+        DraftChange::Joints {
+            order: (0..count).collect(),
+            factor: only(factor, 1.0),
+            offset: only(angle, 0.0),
+        }
     }
 
     /// Other names.
-    pub fn order(order: Vec<usize>) -> Change {
+    pub fn order(order: Vec<usize>) -> DraftChange {
         let count = order.len();
-        Change::Joints { order, factor: vec![1.0; count], offset: vec![0.0; count] }
+        DraftChange::Joints { order, factor: vec![1.0; count], offset: vec![0.0; count] }
     }
 }
 
@@ -201,23 +207,23 @@ impl Draft {
     }
 
     /// The draft with a mistake undone.
-    pub fn with(&self, change: &Change) -> Draft {
+    pub fn with(&self, change: &DraftChange) -> Draft {
         let mut draft = self.clone();
         draft.apply(change);
         draft
     }
 
-    pub(super) fn apply(&mut self, change: &Change) {
+    pub(super) fn apply(&mut self, change: &DraftChange) {
         match change {
-            Change::Joints { .. } => {
+            DraftChange::Joints { .. } => {
                 for row in self.joints.chunks_mut(self.joint_count) {
                     change_joints(change, row);
                 }
                 self.joint_changes.push(change.clone());
             }
-            Change::Seen(matrix) => self.seen.iter_mut().for_each(|seen| *seen = matrix * *seen),
-            Change::Rows { by, with_clamps } => self.displace(*by, *with_clamps),
-            Change::Groups(a, b) => {
+            DraftChange::Seen(matrix) => self.seen.iter_mut().for_each(|seen| *seen = matrix * *seen),
+            DraftChange::Rows { by, with_clamps } => self.displace(*by, *with_clamps),
+            DraftChange::Groups(a, b) => {
                 for group in &mut self.group {
                     *group = if *group == *a {
                         *b
@@ -228,14 +234,16 @@ impl Draft {
                     };
                 }
             }
-            Change::Devices(frames) => frames.iter().for_each(|&(group, frame)| self.devices[group] = frame),
-            Change::Base(base) => self.base = Some(*base),
-            Change::Tool(tool) => self.tool = Some(*tool),
-            Change::Body(body, tool) => {
+            DraftChange::Devices(frames) => {
+                frames.iter().for_each(|&(group, frame)| self.devices[group] = frame)
+            }
+            DraftChange::Base(base) => self.base = Some(*base),
+            DraftChange::Tool(tool) => self.tool = Some(*tool),
+            DraftChange::Body(body, tool) => {
                 self.body = *body;
                 self.tool = tool.or(self.tool);
             }
-            Change::Moved(first) => {
+            DraftChange::Moved(first) => {
                 let (old, new) = (self.station_at(*first), self.stations);
                 for (row, station) in self.rows.iter().zip(&mut self.station) {
                     if row >= first && *station == old {
@@ -244,7 +252,7 @@ impl Draft {
                 }
                 self.stations += 1;
             }
-            Change::Apart(group) => {
+            DraftChange::Apart(group) => {
                 for (own, station) in self.group.iter().zip(&mut self.station) {
                     if own == group {
                         *station = self.stations;
@@ -252,20 +260,20 @@ impl Draft {
                 }
                 self.stations += 1;
             }
-            Change::Placed(clamp) => self.loose.push(*clamp),
-            Change::Within(rows, change) => self.apply_within(*rows, change),
-            Change::Zero { joint, by } => {
+            DraftChange::Placed(clamp) => self.loose.push(*clamp),
+            DraftChange::Within(rows, change) => self.apply_within(*rows, change),
+            DraftChange::Zero { joint, by } => {
                 self.joints.iter_mut().skip(*joint).step_by(self.joint_count).for_each(|q| *q += by);
             }
-            Change::Column { of, by } => {
+            DraftChange::Column { cell, by } => {
                 let all: Vec<usize> = (0..self.len()).collect();
-                self.displace_column(&all, *of, *by);
+                self.displace_column(&all, *cell, *by);
             }
-            Change::Number { row, of, value } => {
+            DraftChange::Number { row, cell, value } => {
                 let Some(at) = self.rows.iter().position(|known| known == row) else { return };
-                *self.number_mut(at, *of) = *value;
+                *self.number_mut(at, *cell) = *value;
             }
-            Change::Without(rows) => {
+            DraftChange::Without(rows) => {
                 let kept: Vec<usize> = (0..self.len()).filter(|&at| !rows.contains(&self.rows[at])).collect();
                 *self = self.part(&kept);
             }
@@ -341,8 +349,8 @@ fn named(mut names: Vec<String>, count: usize) -> Vec<String> {
 }
 
 /// The joint values of one row as they are meant.
-pub(super) fn change_joints(change: &Change, row: &mut [f64]) {
-    if let Change::Joints { order, factor, offset } = change {
+pub(super) fn change_joints(change: &DraftChange, row: &mut [f64]) {
+    if let DraftChange::Joints { order, factor, offset } = change {
         let recorded = row.to_vec();
         for (j, value) in row.iter_mut().enumerate() {
             *value = factor[j] * recorded[order[j]] + offset[j];

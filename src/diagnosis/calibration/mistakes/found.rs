@@ -1,69 +1,72 @@
 //! What the search found, as findings: what is said of each, its rivals, and what checks it.
 
-use super::super::effects::fixture::{BASE_SHIFT, CLAMP_POSE, TOOL_SHIFT};
+mod fixtures;
+mod undo;
+
+use super::super::effects::fixture::CLAMP_POSE;
 use super::super::effects::mistakes::FRAME_MISTAKE;
-use super::draft::Change;
+use super::super::effects::mounting::{BASE_SHIFT, TOOL_SHIFT};
+use super::draft::DraftChange;
 use super::motion::{motion_estimates, moved};
 use super::names::{place, pose_name};
-use super::search::{Found, Search, State, Step};
+use super::search::{AdoptedStep, FittedDraft, MistakeSearch, SearchStep};
 use super::slips::Slip;
 use super::{Mended, Suspicion};
 use crate::inference::{Description, Effect, Estimate, Finding, Location, Part, Rival};
 use crate::units::{DEG, MM, significant};
 
 impl Mended {
+    /// Adds what was found: what undoes it, why that is, and ln of its odds against what is there
+    /// without it.
     pub(super) fn add(
         &mut self,
         effect: &'static Effect,
         location: Location,
         estimates: Vec<Estimate>,
-        cure: &str,
-        why: &str,
+        (cure, why): (&str, &str),
+        log_odds: f64,
     ) {
         let lower = lower(cure);
-        let words =
+        let description =
             format!("likely mistake in {location}: {why}; {lower} (`rodcal diagnose calibration` says more)");
-        self.suspicions.push(Suspicion { words, spoils_fit: true });
-        let description = Description { observed: cure.to_owned(), cause: why.to_owned() };
-        self.found.push(Finding::without_terms(effect, location, estimates, description));
+        self.suspicions.push(Suspicion { description, spoils_fit: true });
+        let observed = Description { observed: cure.to_owned(), cause: why.to_owned() };
+        let p_value = (-log_odds).exp();
+        self.found.push(Finding { p_value, ..Finding::without_terms(effect, location, estimates, observed) });
     }
 
-    pub(super) fn add_found(&mut self, search: &Search, best: &State, found: &Found) {
+    pub(super) fn add_found(&mut self, search: &MistakeSearch, best: &FittedDraft, found: &AdoptedStep) {
         match &found.step {
-            Step::Move(number) => {
+            SearchStep::Move(number) => {
                 let own = &search.moves[*number];
-                self.add(
-                    own.effect,
-                    Location::key(own.location.clone()),
-                    own.estimates.clone(),
-                    &own.cure,
-                    &own.why,
-                );
+                let location = own.location.clone().into();
+                self.add(own.effect, location, own.estimates.clone(), (&own.cure, &own.why), found.log_odds);
                 if let Some(last) = self.suspicions.last_mut() {
                     last.spoils_fit = !own.change.is_guess();
                 }
             }
-            Step::Elsewhere(change) if !change.adds_station() => self.add_fixture(search, best, change),
-            Step::Elsewhere(change) => self.add_elsewhere(search, best, found, change),
-            Step::Part(number, Change::Within(rows, change)) => {
+            SearchStep::Elsewhere(change) if !change.adds_station() => {
+                self.add_fixture(search, best, change, found.log_odds)
+            }
+            SearchStep::Elsewhere(change) => self.add_elsewhere(search, best, found, change),
+            SearchStep::Part(number, DraftChange::Within(rows, change)) => {
                 let mut own = search.of_rows[*number].clone();
-                if let Change::Zero { joint, by } = **change {
+                if let DraftChange::Zero { joint, by } = **change {
                     let error = search.error_of_zero(best, *rows, joint);
-                    own.say_zero(&self.campaign.robot, joint, by, error);
+                    own.describe_zero(&self.campaign.robot, joint, by, error);
                 }
                 let there = place(&self.campaign.measurements, *rows);
-                let location = Location::key(format!("{}, {there}", own.location));
                 let cure = format!("{} {there}", own.cure);
-                self.add(own.effect, location, own.estimates, &cure, &own.why);
+                let location = own.location.rows(there).into();
+                self.add(own.effect, location, own.estimates, (&cure, &own.why), found.log_odds);
             }
-            Step::Part(..) | Step::Slip(_) => return,
+            SearchStep::Part(..) | SearchStep::Slip(_) => return,
         }
         let Some(finding) = self.found.last_mut() else { return };
-        finding.p_value = (-found.log_odds).exp();
         finding.explains = found.explains;
         let mut rivals: Vec<Rival> = Vec::new();
         for (effect, location, odds) in &found.rivals {
-            let (location, odds) = (Location::key(location.clone()), *odds);
+            let (location, odds) = (Location::Key(location.clone()), *odds);
             let is_it = |e: &Effect, at: &Location| e == *effect && *at == location;
             if !is_it(finding.effect, &finding.location)
                 && !rivals.iter().any(|r| is_it(r.effect, &r.location))
@@ -72,10 +75,11 @@ impl Mended {
             }
         }
         // the base turned about joint 1 says the same, and the rod about the last joint
-        if matches!(&found.step, Step::Move(number) if search.moves[*number].change.is_zero_of_first()) {
+        if matches!(&found.step, SearchStep::Move(number) if search.moves[*number].change.is_zero_of_first())
+        {
             rivals.push(Rival::without_term(&FRAME_MISTAKE, Location::key("base.rpy_deg"), 1.0));
         }
-        if let Step::Part(_, Change::Within(_, change)) = &found.step {
+        if let SearchStep::Part(_, DraftChange::Within(_, change)) = &found.step {
             let last = self.campaign.robot.joints.len().saturating_sub(1);
             match change.joint_of_zero() {
                 Some(0) => {
@@ -88,7 +92,7 @@ impl Mended {
             }
         }
         if let Some(clamp) = found.may_be_clamp {
-            let name = self.campaign.measurements.groups[clamp].name.clone();
+            let name = self.campaign.measurements.groups[clamp].name.to_string();
             rivals.push(Rival::without_term(&CLAMP_POSE.effect, Location::Named(name), 1.0));
         }
         finding.rivals = rivals;
@@ -98,23 +102,30 @@ impl Mended {
     /// What happened to a single row, or to a few.
     pub(super) fn add_slip(&mut self, slip: Slip) {
         let Slip { effect, location, estimates, cure, why, log_odds, explains, rivals, .. } = slip;
-        self.add(effect, Location::key(location), estimates, &cure, &why);
+        self.add(effect, location.into(), estimates, (&cure, &why), log_odds);
         let Some(finding) = self.found.last_mut() else { return };
-        (finding.p_value, finding.explains) = ((-log_odds).exp(), explains);
-        let rival = |(effect, place)| Rival::without_term(effect, Location::key(place), 1.0);
+        finding.explains = explains;
+        let rival = |(effect, place)| Rival::without_term(effect, Location::Key(place), 1.0);
         finding.rivals = rivals.into_iter().map(rival).collect();
     }
 
     /// A frame that moved, with how far.
-    fn add_elsewhere(&mut self, search: &Search, best: &State, found: &Found, change: &Change) {
+    fn add_elsewhere(
+        &mut self,
+        search: &MistakeSearch,
+        best: &FittedDraft,
+        found: &AdoptedStep,
+        change: &DraftChange,
+    ) {
         // its number among the stations: those of the file, then one for each such step
         let earlier = best.steps.iter().take_while(|step| **step != found.step);
-        let has_own = |step: &&Step| matches!(step, Step::Elsewhere(change) if change.adds_station());
+        let has_own =
+            |step: &&SearchStep| matches!(step, SearchStep::Elsewhere(change) if change.adds_station());
         let number = search.draft.stations + earlier.filter(has_own).count();
         let bases = &best.fit.bases;
         let recording = &self.campaign.measurements;
         let old = match change {
-            Change::Moved(first) => {
+            DraftChange::Moved(first) => {
                 let before = search.changed(&best.steps);
                 let at = before.rows.iter().position(|&row| row >= *first).unwrap_or(0);
                 before.station[at.saturating_sub(1)]
@@ -123,39 +134,40 @@ impl Mended {
         };
         let (Some(from), Some(to)) = (bases.get(old), bases.get(number)) else { return };
         let (way, angle) = moved(from, to);
-        let said = format!("{} mm and {}°", significant(way / MM, 4), significant(angle / DEG, 3));
+        let distance = format!("{} mm and {}°", significant(way / MM, 4), significant(angle / DEG, 3));
         match change {
-            Change::Moved(first) => {
+            DraftChange::Moved(first) => {
                 let row = first.saturating_sub(1);
                 let after = pose_name(recording, row);
                 let cure = format!(
-                    "Tracker or base moved by {said} after {after}: give the later rows another name in a column station"
+                    "Tracker or base moved by {distance} after {after}: give the later rows another name in a column station"
                 );
                 let location = Location::Shift { what: None, row, after };
                 let estimates = motion_estimates(from, to);
-                self.add(&BASE_SHIFT.effect, location, estimates, &cure, "it stood in two places");
+                let why = "it stood in two places";
+                self.add(&BASE_SHIFT.effect, location, estimates, (&cure, why), found.log_odds);
             }
-            Change::Apart(clamp) => {
-                let name = recording.groups[*clamp].name.clone();
+            DraftChange::Apart(clamp) => {
+                let name = recording.groups[*clamp].name.to_string();
                 let device = recording.groups[*clamp].device;
                 let there = from.then(&to.inverse()).then(&device);
-                let said = there.origin / MM;
+                let origin = there.origin / MM;
                 let [roll, pitch, yaw] = there.roll_pitch_yaw().map(|angle| significant(angle / DEG, 5));
                 let cure = format!(
                     "Give {name} xyz_mm = [{:.2}, {:.2}, {:.2}] and rpy_deg = [{roll}, {pitch}, {yaw}]",
-                    said.x, said.y, said.z
+                    origin.x, origin.y, origin.z
                 );
                 let (way, _) = moved(&device, &there);
                 let why = format!("it stands {} mm from where the campaign says", significant(way / MM, 3));
                 let estimates = motion_estimates(&device, &there);
-                self.add(&FRAME_MISTAKE, Location::key(name), estimates, &cure, &why);
+                self.add(&FRAME_MISTAKE, Location::key(name), estimates, (&cure, &why), found.log_odds);
             }
             _ => {}
         }
     }
 }
 
-fn lower(words: &str) -> String {
-    let mut letters = words.chars();
+fn lower(sentence: &str) -> String {
+    let mut letters = sentence.chars();
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }

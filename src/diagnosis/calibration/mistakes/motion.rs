@@ -2,20 +2,19 @@
 
 use nalgebra::Rotation3;
 
-use super::super::effects::fixture::BASE_SHIFT;
 use super::moves::turn;
 use crate::calibration::Calibration;
 use crate::calibration::campaign::Recording;
+use crate::diagnosis::calibration::effects::mounting::BASE_SHIFT;
 use crate::inference::{Estimate, Finding, Location};
 use crate::spatial::Pose;
-use crate::units::{UM, URAD};
 
 /// Half of a 95 % interval in standard deviations.
 const COVERAGE: f64 = 1.96;
 
 /// How far the base moved by the calibration of `recording`, with 95 % intervals: the frame of a
 /// station is six of its unknowns. Of several moves the order is that of the rows.
-pub(super) fn measure_moves(recording: &Recording, calibration: &Calibration, findings: &mut [Finding]) {
+pub fn measure_moves(recording: &Recording, calibration: &Calibration, findings: &mut [Finding]) {
     let rows = recording.rows.windows(2).filter(|pair| pair[0].station != pair[1].station);
     let places: Vec<(usize, usize)> = rows.map(|pair| (pair[0].station, pair[1].station)).collect();
     let row_of = |finding: &Finding| match (&finding.location, finding.effect == &BASE_SHIFT.effect) {
@@ -52,19 +51,16 @@ pub(super) fn measure_moves(recording: &Recording, calibration: &Calibration, fi
 }
 
 /// The way from one pose to another, and the turn.
-pub(super) fn motion_estimates(from: &Pose, to: &Pose) -> Vec<Estimate> {
+pub fn motion_estimates(from: &Pose, to: &Pose) -> Vec<Estimate> {
     let way = to.origin - from.origin;
     let turn = Rotation3::from_matrix_unchecked(to.rotation * from.rotation.transpose()).scaled_axis();
     let names = ["dx_um", "dy_um", "dz_um", "rx_urad", "ry_urad", "rz_urad"];
     let values = [way.x, way.y, way.z, turn.x, turn.y, turn.z];
-    let estimate = |(k, name): (usize, &&str)| {
-        let unit = if k < 3 { UM } else { URAD };
-        Estimate { name: (*name).into(), unit, value: values[k], low: values[k], high: values[k] }
-    };
+    let estimate = |(k, name): (usize, &&str)| Estimate::new(*name, values[k], values[k], values[k]);
     names.iter().enumerate().map(estimate).collect()
 }
 
 /// How far, m, and by which angle, rad, a base moved.
-pub(super) fn moved(from: &Pose, to: &Pose) -> (f64, f64) {
+pub fn moved(from: &Pose, to: &Pose) -> (f64, f64) {
     ((to.origin - from.origin).norm(), turn(&from.rotation, &to.rotation))
 }

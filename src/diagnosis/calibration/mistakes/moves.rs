@@ -10,10 +10,10 @@ mod positions;
 use nalgebra::Vector3;
 
 pub(super) use self::conventions::turn;
-use super::draft::{Change, Draft};
+use super::draft::{Draft, DraftChange};
 use super::names::column;
 use crate::calibration::campaign::Campaign;
-use crate::inference::{Effect, Estimate};
+use crate::inference::{Effect, Estimate, Key};
 
 /// Ln of how much rarer some mistakes are.
 const UNUSUAL: f64 = -1.0;
@@ -21,11 +21,10 @@ const RARE: f64 = -2.0;
 
 /// A mistake that may have been made, with what is said of it.
 #[derive(Clone)]
-pub(super) struct Move {
+pub(super) struct PossibleMistake {
     pub effect: &'static Effect,
-    /// As in the file.
-    pub location: String,
-    pub change: Change,
+    pub location: Key,
+    pub change: DraftChange,
     pub log_prior: f64,
     /// What the contact force is multiplied by, where that is all.
     pub force: Option<f64>,
@@ -36,9 +35,9 @@ pub(super) struct Move {
     pub why: String,
 }
 
-impl Move {
+impl PossibleMistake {
     /// What explains poses as well, at such odds.
-    pub fn with_odds(&self, odds: f64) -> (&'static Effect, String, f64) {
+    pub fn with_odds(&self, odds: f64) -> (&'static Effect, Key, f64) {
         (self.effect, self.location.clone(), odds)
     }
 }
@@ -60,7 +59,7 @@ pub(super) fn all(
     draft: &Draft,
     others: &[Other],
     forces: &[(usize, f64)],
-) -> Vec<Move> {
+) -> Vec<PossibleMistake> {
     let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: false };
     list.joints();
     list.positions();
@@ -76,28 +75,28 @@ pub(super) fn all(
 struct List<'a> {
     campaign: &'a Campaign,
     draft: &'a Draft,
-    moves: Vec<Move>,
+    moves: Vec<PossibleMistake>,
     /// True for what some rows hold and others do not.
     is_of_rows: bool,
 }
 
 /// An exact number.
 pub(super) fn exact(name: &str, value: f64) -> Vec<Estimate> {
-    vec![Estimate { name: name.into(), unit: 1.0, value, low: value, high: value }]
+    vec![Estimate::as_written(name, value, value, value)]
 }
 
 impl List<'_> {
     pub(super) fn add(
         &mut self,
         effect: &'static Effect,
-        location: &str,
-        change: Change,
+        location: Key,
+        change: DraftChange,
         cure: &str,
         why: &str,
-    ) -> &mut Move {
-        self.moves.push(Move {
+    ) -> &mut PossibleMistake {
+        self.moves.push(PossibleMistake {
             effect,
-            location: location.into(),
+            location,
             change,
             log_prior: 0.0,
             force: None,

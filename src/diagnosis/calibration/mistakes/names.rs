@@ -2,6 +2,7 @@
 
 use super::draft::Rows;
 use crate::calibration::campaign::Recording;
+use crate::inference::Key;
 use crate::robot::{Motion, Robot};
 
 /// The columns of a measured point.
@@ -13,6 +14,11 @@ pub(super) fn column(robot: &Robot, joint: usize) -> String {
         Motion::Revolute => format!("q{}_deg", joint + 1),
         Motion::Prismatic => format!("q{}_mm", joint + 1),
     }
+}
+
+/// One number of a row, or several: `q4_deg of pose 7`.
+pub(super) fn cell(columns: &str, pose: &str) -> Key {
+    Key::new(format!("{columns} of {pose}"))
 }
 
 /// `pose 7`, with its clamp where several poses have that name.

@@ -12,46 +12,34 @@
 
 mod density;
 mod distance;
+mod loaded_robot;
 mod means;
+mod priors;
+mod residuals;
 mod rough;
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
 pub(super) use self::density::{density, t_scale, weight_of};
+pub(super) use self::loaded_robot::LoadedRobot;
 use self::means::{minus_means, without_means};
+use self::priors::{moved, prior_precision, sizes};
+pub(super) use self::residuals::from_points;
+use self::residuals::{FitState, load, residuals, tips};
 pub(super) use self::rough::placed;
 use self::rough::rough;
-use super::draft::{Change, Draft};
-use crate::calibration::Compensation;
+use super::draft::{Draft, DraftChange};
 use crate::calibration::growth::log_volume;
 use crate::linalg::transposed_product;
-use crate::robot::{Kinematics, Loads, Parameter, Robot, Setup, minimal_parameters};
-use crate::spatial::{Pose, exponential, skew, times};
-use crate::units::{DEG, MM, STANDARD_GRAVITY};
+use crate::robot::{Parameter, ParameterGroup, Setup};
+use crate::spatial::{Pose, exponential};
 
-/// Standard deviations of a robot as built, twice the usual: lengths, twists, zeros of joints.
-const LENGTH: f64 = 2.0 * MM;
-const TWIST: f64 = 0.2 * DEG;
-const ZERO: f64 = 0.6 * DEG;
-/// How far a joint yields under its largest torque, rad.
-const YIELDS: f64 = 1e-3;
-/// A step of the tip is at most so uncertain, m: a ridge, no knowledge.
-const TOOL: f64 = 0.5;
 /// Scatter that no file goes below, as a share of the reach: 10 µm per metre.
 const LEAST_SCALE: f64 = 1e-5;
 const MOST_STEPS: usize = 12;
 /// After so many steps what one gains tells the rest, which is so many times as much at most.
 const SETTLING: usize = 2;
 const AHEAD: f64 = 10.0;
-
-/// A robot with what hangs on it.
-pub(super) struct Body<'a> {
-    pub robot: &'a Robot,
-    pub compensation: Compensation,
-    free: Vec<Parameter>,
-    /// Largest distance of the tip from the first joint, m.
-    pub reach: f64,
-}
 
 /// A draft fitted.
 #[derive(Debug, Clone)]
@@ -71,25 +59,6 @@ pub(super) struct Fit {
     links: Vec<(Parameter, f64)>,
 }
 
-impl<'a> Body<'a> {
-    pub fn new(robot: &'a Robot, compensation: Compensation, tool: Vector3<f64>, draft: &Draft) -> Body<'a> {
-        let is_base = |p: &Parameter| matches!(p, Parameter::BasePosition(_) | Parameter::BaseRotation(_));
-        let mut free = minimal_parameters(robot, tool, tool, compensation.payload);
-        free.retain(|p| !is_base(p) && !matches!(p, Parameter::Tool(_)));
-        free.extend((0..3).map(Parameter::Tool));
-        let from = robot.root.origin;
-        let reach = |row: usize| (robot.flange_at(draft.joints(row)).point(&tool) - from).norm();
-        let reach = (0..draft.len()).map(reach).fold(0.0, f64::max);
-        Body { robot, compensation, free, reach }
-    }
-
-    /// The same under a contact force that is `factor` times as large.
-    pub fn with_contact_force_times(&self, factor: f64) -> Body<'a> {
-        let compensation = self.compensation.with_contact_force_times(factor);
-        Body { compensation, free: self.free.clone(), ..*self }
-    }
-}
-
 /// What a fit that is worth its time comes to.
 #[derive(Clone, Copy)]
 pub(super) struct Worthwhile {
@@ -105,38 +74,31 @@ impl Worthwhile {
 }
 
 /// Fits a draft; `None` where that is not worthwhile, or nothing can be computed.
-pub(super) fn fit(draft: &Draft, body: &Body, worthwhile: Worthwhile) -> Option<Fit> {
+pub(super) fn fit(draft: &Draft, body: &LoadedRobot, worthwhile: Worthwhile) -> Option<Fit> {
     let rough = rough(draft, body.robot, body.reach)?;
     if rough.median > worthwhile.most_left {
         return None;
     }
     let setup = Setup::new(body.robot, Pose::IDENTITY, rough.tool);
-    let state = State { setup, bases: rough.bases };
+    let state = FitState { setup, bases: rough.bases };
     refined(draft, body, state, rough.median, worthwhile.log_likelihood)
 }
 
 /// Fits a draft from where another one's fit ended: rows that hardly count there may be others than
 /// from the rough start.
-pub(super) fn fit_from(draft: &Draft, body: &Body, start: &Fit, rough: f64) -> Option<Fit> {
+pub(super) fn fit_from(draft: &Draft, body: &LoadedRobot, start: &Fit, rough: f64) -> Option<Fit> {
     let mut bases = start.bases.clone();
     bases.truncate(draft.stations);
     if !draft.has_sockets() && bases.len() < draft.stations {
         return None;
     }
-    refined(draft, body, State { setup: start.setup(body), bases }, rough, f64::NEG_INFINITY)
-}
-
-/// A state of the fit.
-#[derive(Clone)]
-struct State<'a> {
-    setup: Setup<'a>,
-    bases: Vec<Pose>,
+    refined(draft, body, FitState { setup: start.setup(body), bases }, rough, f64::NEG_INFINITY)
 }
 
 fn refined<'a>(
     draft: &Draft,
-    body: &Body<'a>,
-    mut state: State<'a>,
+    body: &LoadedRobot<'a>,
+    mut state: FitState<'a>,
     rough: f64,
     worthwhile: f64,
 ) -> Option<Fit> {
@@ -147,7 +109,7 @@ fn refined<'a>(
     let as_drawn = Setup::new(body.robot, Pose::IDENTITY, state.setup.tool);
     let nominal: Vec<f64> = body.free.iter().map(|&p| as_drawn.get(p)).collect();
     let least = LEAST_SCALE * body.reach;
-    let mut best: Option<(f64, f64, State, Vec<Vector3<f64>>)> = None;
+    let mut best: Option<(f64, f64, FitState, Vec<Vector3<f64>>)> = None;
     // rows that a mistake touches hardly count in the middle of a socket either
     let mut weight = vec![1.0; draft.len()];
     for taken in 0..MOST_STEPS {
@@ -188,119 +150,15 @@ fn refined<'a>(
     })
 }
 
-/// Torques and deflections where the robot stands now.
-fn load(draft: &Draft, body: &Body, state: &State, torque: &mut [f64], deflection: &mut [Vector3<f64>]) {
-    let with = &body.compensation;
-    let count = draft.joint_count;
-    let mut kinematics = Kinematics::new(&state.setup);
-    for row in 0..draft.len() {
-        let torque = &mut torque[row * count..][..count];
-        kinematics.update(draft.joints(row), torque);
-        let device = &draft.devices[draft.group[row]];
-        let in_world = times(&device.rotation, &with.contact_force);
-        let tip_force = match state.bases.get(draft.station[row]) {
-            Some(base) => base.rotation.tr_mul(&in_world),
-            None => in_world,
-        };
-        let loads = Loads { gravity: body.robot.gravity, payload: with.payload, tip_force };
-        kinematics.torques(&loads, torque);
-        if let Some(compliance) = &with.compliance {
-            let r = &kinematics.flange.rotation;
-            let down = r.tr_mul(&body.robot.gravity) / STANDARD_GRAVITY;
-            deflection[row] =
-                times(&compliance.gravity, &down) + times(&compliance.force, &r.tr_mul(&tip_force));
-        }
-    }
-}
-
-/// Standard deviations of the free parameters.
-fn sizes(draft: &Draft, body: &Body, torque: &[f64]) -> Vec<f64> {
-    let largest = |j: usize| {
-        let of_joint = torque.iter().skip(j).step_by(draft.joint_count);
-        of_joint.fold(1e-6, |most: f64, torque| most.max(torque.abs()))
-    };
-    let size = |parameter: &Parameter| match parameter {
-        Parameter::D(_) | Parameter::A(_) => LENGTH,
-        Parameter::Alpha(_) | Parameter::Beta(_) => TWIST,
-        Parameter::Theta(_) => ZERO,
-        Parameter::Compliance(j) => YIELDS / largest(*j),
-        // a base has columns of its own
-        Parameter::BasePosition(_) | Parameter::BaseRotation(_) | Parameter::Tool(_) => TOOL,
-    };
-    body.free.iter().map(size).collect()
-}
-
-/// What the normal matrix has of the priors: those of the free parameters, and a ridge of the
-/// bases.
-fn prior_precision(sd: &[f64], columns: usize) -> Vec<f64> {
-    (0..columns).map(|k| sd.get(k).map_or(1e-6, |sd| sd.powi(-2))).collect()
-}
-
-/// By row, in {W} of its station (with sockets in {0}); the columns of the free parameters and, by
-/// station, of its base, are filled in where they are asked for.
-fn residuals(
-    draft: &Draft,
-    state: &State,
-    torque: &[f64],
-    deflection: &[Vector3<f64>],
-    columns: Option<(&[Parameter], &mut DMatrix<f64>)>,
-    weight: &[f64],
-) -> Vec<Vector3<f64>> {
-    let off = from_points(draft, tips(draft, state, torque, deflection, columns));
-    minus_means(&off, draft, weight)
-}
-
-/// From the point of every row to its tip; with sockets the tip itself.
-pub(super) fn from_points(draft: &Draft, mut tips: Vec<Vector3<f64>>) -> Vec<Vector3<f64>> {
-    if !draft.has_sockets() {
-        tips.iter_mut().enumerate().for_each(|(row, tip)| *tip -= draft.point(row));
-    }
-    tips
-}
-
-/// The tips of the rows, and the columns as [`residuals`] has them.
-fn tips(
-    draft: &Draft,
-    state: &State,
-    torque: &[f64],
-    deflection: &[Vector3<f64>],
-    mut columns: Option<(&[Parameter], &mut DMatrix<f64>)>,
-) -> Vec<Vector3<f64>> {
-    let count = draft.joint_count;
-    let mut kinematics = Kinematics::new(&state.setup);
-    let mut tips = Vec::with_capacity(draft.len());
-    for row in 0..draft.len() {
-        let torque = &torque[row * count..][..count];
-        kinematics.update(draft.joints(row), torque);
-        kinematics.tip += times(&kinematics.flange.rotation, &deflection[row]);
-        let base = state.bases.get(draft.station[row]).copied().unwrap_or(Pose::IDENTITY);
-        let tip = base.point(&kinematics.tip);
-        tips.push(tip);
-        if let Some((free, block)) = &mut columns {
-            for (k, &parameter) in free.iter().enumerate() {
-                let column = times(&base.rotation, &kinematics.column(parameter, torque));
-                block.fixed_view_mut::<3, 1>(3 * row, k).copy_from(&column);
-            }
-            if !state.bases.is_empty() {
-                let first = free.len() + 6 * draft.station[row];
-                let arm = -skew(&(tip - base.origin));
-                (0..3).for_each(|axis| block[(3 * row + axis, first + axis)] = 1.0);
-                block.fixed_view_mut::<3, 3>(3 * row, first + 3).copy_from(&arm);
-            }
-        }
-    }
-    tips
-}
-
 /// One Gauss–Newton step, by the columns of the state.
 fn step<'a>(
     draft: &Draft,
-    body: &Body,
-    state: &State<'a>,
+    body: &LoadedRobot,
+    state: &FitState<'a>,
     (off, lengths, scale): (&[Vector3<f64>], &[f64], f64),
     (nominal, sd): (&[f64], &[f64]),
     mut block: DMatrix<f64>,
-) -> Option<State<'a>> {
+) -> Option<FitState<'a>> {
     let (free, columns) = (body.free.len(), block.ncols());
     let mut right = DVector::zeros(3 * draft.len());
     for (row, (off, length)) in off.iter().zip(lengths).enumerate() {
@@ -314,7 +172,7 @@ fn step<'a>(
     for (k, precision) in precision.iter().enumerate() {
         normal[(k, k)] += precision;
         // the tip has a ridge only: it is where it fits
-        if k < free && !matches!(body.free[k], Parameter::Tool(_)) {
+        if k < free && body.free[k].group() != ParameterGroup::Tool {
             gradient[k] += precision * (state.setup.get(body.free[k]) - nominal[k]);
         }
     }
@@ -332,17 +190,8 @@ fn step<'a>(
     Some(next)
 }
 
-/// ½·Σ((ρ − nominal)/sd)², the tip excepted.
-fn moved(body: &Body, state: &State, nominal: &[f64], sd: &[f64]) -> f64 {
-    let square = |k: usize| match body.free[k] {
-        Parameter::Tool(_) => 0.0,
-        parameter => ((state.setup.get(parameter) - nominal[k]) / sd[k]).powi(2),
-    };
-    0.5 * (0..body.free.len()).map(square).sum::<f64>()
-}
-
 impl Fit {
-    fn setup<'a>(&self, body: &Body<'a>) -> Setup<'a> {
+    fn setup<'a>(&self, body: &LoadedRobot<'a>) -> Setup<'a> {
         let mut setup = Setup::new(body.robot, Pose::IDENTITY, self.tool);
         self.links.iter().for_each(|&(parameter, value)| setup.set(parameter, value));
         setup
@@ -350,13 +199,13 @@ impl Fit {
 
     /// Ln of the volume that the recorded angles span ([`log_volume`]), in which a change of them
     /// all counts; nothing where points were measured.
-    pub fn log_volume(&self, draft: &Draft, body: &Body) -> f64 {
+    pub fn log_volume(&self, draft: &Draft, body: &LoadedRobot) -> f64 {
         if !draft.has_sockets() {
             return 0.0;
         }
         let mut factor = vec![1.0; draft.joint_count];
         for change in &draft.joint_changes {
-            if let Change::Joints { factor: by, .. } = change {
+            if let DraftChange::Joints { factor: by, .. } = change {
                 factor.iter_mut().zip(by).for_each(|(factor, by)| *factor *= by);
             }
         }
@@ -365,27 +214,27 @@ impl Fit {
 
     /// Distances of the tip of every row of `draft` from its point, m, if its station were
     /// `station`.
-    pub fn lengths_at(&self, draft: &Draft, body: &Body, station: usize) -> Vec<f64> {
+    pub fn lengths_at(&self, draft: &Draft, body: &LoadedRobot, station: usize) -> Vec<f64> {
         let mut there = draft.clone();
         there.station.iter_mut().for_each(|own| *own = station);
         self.lengths(&there, body)
     }
 
     /// Distances of the tip of every row of `draft` from its point, m.
-    pub fn lengths(&self, draft: &Draft, body: &Body) -> Vec<f64> {
+    pub fn lengths(&self, draft: &Draft, body: &LoadedRobot) -> Vec<f64> {
         let off = self.offsets(draft, body);
         minus_means(&off, draft, &vec![1.0; off.len()]).iter().map(|off| off.norm()).collect()
     }
 
     /// From the point of every row of `draft` to its tip, in {W}, m; with sockets the tip in {0}.
-    pub fn offsets(&self, draft: &Draft, body: &Body) -> Vec<Vector3<f64>> {
+    pub fn offsets(&self, draft: &Draft, body: &LoadedRobot) -> Vec<Vector3<f64>> {
         from_points(draft, self.tips(draft, body))
     }
 
     /// The tip of every row of `draft`, in {W} (with sockets in {0}), m: a row's depends on its
     /// joints, its station and its device.
-    pub fn tips(&self, draft: &Draft, body: &Body) -> Vec<Vector3<f64>> {
-        let state = State { setup: self.setup(body), bases: self.bases.clone() };
+    pub fn tips(&self, draft: &Draft, body: &LoadedRobot) -> Vec<Vector3<f64>> {
+        let state = FitState { setup: self.setup(body), bases: self.bases.clone() };
         let mut torque = vec![0.0; draft.joints.len()];
         let mut deflection = vec![Vector3::zeros(); draft.len()];
         load(draft, body, &state, &mut torque, &mut deflection);

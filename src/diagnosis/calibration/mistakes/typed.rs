@@ -2,7 +2,7 @@
 
 /// A number as it may have been meant.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Meant {
+pub struct Meant {
     /// As it would stand in the file.
     pub text: String,
     /// What happened to it.
@@ -26,7 +26,7 @@ const FARTHEST: i32 = 3;
 const MOST_DECIMALS: usize = 9;
 
 /// How many decimals a column has at most.
-pub(super) fn decimals(values: impl Iterator<Item = f64>) -> usize {
+pub fn decimals(values: impl Iterator<Item = f64>) -> usize {
     let needed = |value: f64| {
         let is_whole = |places: &usize| {
             let scaled = value.abs() * 10f64.powi(*places as i32);
@@ -38,7 +38,7 @@ pub(super) fn decimals(values: impl Iterator<Item = f64>) -> usize {
 }
 
 /// All that `value`, written with so many decimals, may have been meant to be.
-pub(super) fn meant(value: f64, decimals: usize) -> Vec<Meant> {
+pub fn meant(value: f64, decimals: usize) -> Vec<Meant> {
     let recorded = format!("{value:.decimals$}");
     let (sign, digits) = match recorded.strip_prefix('-') {
         Some(digits) => ("-", digits.to_owned()),
@@ -95,6 +95,11 @@ pub(super) fn meant(value: f64, decimals: usize) -> Vec<Meant> {
         }
     }
     all
+}
+
+/// A number of the file without what converting it to rad or m and back has left.
+pub(super) fn tidy(value: f64) -> f64 {
+    format!("{value:.12e}").parse().unwrap_or(value)
 }
 
 #[cfg(test)]

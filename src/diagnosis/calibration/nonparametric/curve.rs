@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::diagnosis::calibration::entry::{Column, Entry};
+use super::super::model::entry::{Column, Entry};
 use crate::inference::{JointVariable, Location, Parameter, UNKNOWN, Variable};
 use crate::units::UM;
 

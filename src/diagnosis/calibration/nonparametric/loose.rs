@@ -17,12 +17,11 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 
+use super::super::model::entry::{Column, Entry, linear};
+use super::super::model::{Configuration, Context};
 use super::curve::{SIDES, SIZE, TURN, angle_of, curve};
-use crate::diagnosis::calibration::configuration::Configuration;
-use crate::diagnosis::calibration::context::Context;
-use crate::diagnosis::calibration::entry::{Column, Entry, linear};
 use crate::inference::Parameter;
-use crate::units::{DEG, UM, URAD};
+use crate::units::DEG;
 
 /// Half of the range over which a tooth may be worn, rad.
 const WIDTHS: [f64; 3] = [20.0 * DEG, 35.0 * DEG, 60.0 * DEG];
@@ -49,7 +48,7 @@ fn tool(context: &Context, side: &[f64; 3]) -> Entry {
     });
     let along = named(side);
     let follows = format!("follows to which side gravity presses the tool, along {along} of {{T}}");
-    let parameter = (linear("clearance_um", UM, SIZE), column);
+    let parameter = (linear("clearance_um", SIZE), column);
     curve(format!("orientation, loose along {along} of the tool"), follows, None, vec![parameter])
 }
 
@@ -70,15 +69,14 @@ fn named(side: &[f64; 3]) -> String {
 
 /// Shapes that come back with each turn of a joint.
 fn bearing(context: &Context, joint: usize) -> Vec<Entry> {
-    let waves =
-        |name: &str, unit: f64, size: f64, n: usize, moved: &dyn Fn(&Configuration) -> Vector3<f64>| {
-            let angle = move |there: &Configuration| n as f64 * there.joints[joint];
-            let wave = |label: &str, of: &dyn Fn(f64) -> f64| -> (Parameter, Column) {
-                let column = context.column(|_, there| moved(there) * of(angle(there)));
-                (linear(format!("{name}_{label}_{n}"), unit, size), column)
-            };
-            [wave("sin", &f64::sin), wave("cos", &f64::cos)]
+    let waves = |name: &str, size: f64, n: usize, moved: &dyn Fn(&Configuration) -> Vector3<f64>| {
+        let angle = move |there: &Configuration| n as f64 * there.joints[joint];
+        let wave = |label: &str, function: &dyn Fn(f64) -> f64| -> (Parameter, Column) {
+            let column = context.column(|_, there| moved(there) * function(angle(there)));
+            (linear(format!("{label}_{n}_{name}"), size), column)
         };
+        [wave("sin", &f64::sin), wave("cos", &f64::cos)]
+    };
     let across = |axis: usize| {
         move |there: &Configuration| -> Vector3<f64> { there.link[joint].rotation.column(axis).into() }
     };
@@ -93,10 +91,10 @@ fn bearing(context: &Context, joint: usize) -> Vec<Entry> {
         let follows = format!("comes back {times} per turn of joint {number}, {where_to} its axis");
         curve(label, follows, Some(angle_of(joint)), parameters)
     };
-    let along = |n: usize| waves("along_um", UM, SIZE, n, &|there| there.axis[joint]).into();
-    let shifted = (0..2).flat_map(|k| waves(["x_um", "y_um"][k], UM, SIZE, 2, &across(k))).collect();
+    let along = |n: usize| waves("along_um", SIZE, n, &|there| there.axis[joint]).into();
+    let shifted = (0..2).flat_map(|k| waves(["x_um", "y_um"][k], SIZE, 2, &across(k))).collect();
     let names = ["about_x_urad", "about_y_urad"];
-    let tilted = (0..2).flat_map(|k| waves(names[k], URAD, TURN, 2, &about(k))).collect();
+    let tilted = (0..2).flat_map(|k| waves(names[k], TURN, 2, &about(k))).collect();
     vec![
         shape(1, "along", along(1)),
         shape(2, "along", along(2)),
@@ -132,7 +130,7 @@ pub(super) fn windows(
         let (middle, width) = (middle / DEG, width / DEG);
         let label = format!("joint {number}, about {middle:.0}° ± {width:.0}°, with {with}");
         let follows = format!("appears near {middle:.0}° of joint {number}, and changes with {with}");
-        let parameters = vec![(linear("reversed_urad", URAD, TURN), column)];
+        let parameters = vec![(linear("reversed_urad", TURN), column)];
         let mut entry = curve(label, follows, Some(angle_of(joint)), parameters);
         entry.candidate.weight = share;
         entry

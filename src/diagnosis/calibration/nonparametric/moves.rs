@@ -11,12 +11,11 @@
 //! by their direction  Jⱼ·Σ_k h_k·sign Δₖⱼ
 //! ```
 
+use super::super::model::Context;
+use super::super::model::configuration::STANDSTILL;
+use super::super::model::entry::{Entry, linear};
 use super::curve::curve;
-use crate::diagnosis::calibration::configuration::STANDSTILL;
-use crate::diagnosis::calibration::context::Context;
-use crate::diagnosis::calibration::entry::{Entry, linear};
 use crate::inference::Variable;
-use crate::units::URAD;
 
 /// Moves that may be remembered.
 const MOVES: usize = 3;
@@ -53,16 +52,16 @@ fn all_joints(context: &Context) -> Entry {
             let moved = there.tip_jacobian.iter().enumerate();
             moved.map(|(j, jacobian)| jacobian * step(context, row, k, j)).sum()
         });
-        (linear(format!("share_of_move_{k}"), 1.0, SHARE), column)
+        (linear(format!("share_of_move_{k}"), SHARE), column)
     });
     let follows = "follows the moves before, not the last one alone";
     curve("order, the last moves of all joints", follows, Some(Variable::Order), parameters.collect())
 }
 
-fn of_joint(context: &Context, j: usize, label: String, size: f64, of: &dyn Fn(f64) -> f64) -> Entry {
+fn of_joint(context: &Context, j: usize, label: String, size: f64, lag: &dyn Fn(f64) -> f64) -> Entry {
     let parameters = (1..=MOVES).map(|k| {
-        let column = context.turn(j, |row, _| of(step(context, row, k, j)));
-        (linear(format!("move_{k}_urad"), URAD, size), column)
+        let column = context.turn(j, |row, _| lag(step(context, row, k, j)));
+        (linear(format!("move_{k}_urad"), size), column)
     });
     let follows = format!("follows the moves of joint {} before, not the last one alone", j + 1);
     curve(label, follows, Some(Variable::Order), parameters.collect())

@@ -7,7 +7,7 @@ use crate::robot::{Kinematics, Loads, Setup};
 use crate::spatial::exponential;
 
 /// Share of a size at which columns are compared, and of their largest number by which they may
-/// differ: yields are to first order.
+/// differ: deflections are to first order.
 const STEP: f64 = 0.01;
 const FIRST_ORDER: f64 = 0.01;
 
@@ -97,18 +97,18 @@ pub(super) fn assert_changes<'a>(campaign: &Campaign, calibration: &Calibration<
         let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
         let k = names.iter().position(|own| *own == name).unwrap_or_else(|| panic!("no {name} in {names:?}"));
         let value = STEP * parameters[k].size;
-        let mut told = DVector::zeros(3 * campaign.measurements.len());
-        entry.columns[k].add_to(&mut told, value);
+        let mut predicted = DVector::zeros(3 * campaign.measurements.len());
+        entry.columns[k].add_to(&mut predicted, value);
         let mut difference = 0.0f64;
         for at in 0..campaign.measurements.len() {
             let mut there = row(campaign, calibration, &compensation, at);
             let before = there.tip();
             change(&mut there, at, value);
             let expected = (there.tip() - before) * context.scale[at];
-            difference = difference.max((expected - told.fixed_rows::<3>(3 * at)).norm());
+            difference = difference.max((expected - predicted.fixed_rows::<3>(3 * at)).norm());
         }
-        if told.amax() == 0.0 || difference > FIRST_ORDER * told.amax() {
-            wrong.push(format!("{effect} {location} {name}: {difference:e} of {:e}", told.amax()));
+        if predicted.amax() == 0.0 || difference > FIRST_ORDER * predicted.amax() {
+            wrong.push(format!("{effect} {location} {name}: {difference:e} of {:e}", predicted.amax()));
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");

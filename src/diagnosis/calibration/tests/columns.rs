@@ -11,7 +11,7 @@ use crate::robot::{Body, Kinematics, Parameter};
 #[test]
 fn columns_are_what_a_changed_robot_does() {
     let mut campaign = clamps(12);
-    campaign.wishes.fixed.push(Parameter::Compliance(3));
+    campaign.constraints.fixed.push(Parameter::Compliance(3));
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
     let compensation = Compensation::new(&campaign, Mode::Fea).unwrap();
     let (model, _) = CalibrationModel::new(&campaign, calibration.clone()).unwrap();
@@ -173,17 +173,21 @@ fn columns_are_what_a_changed_robot_does() {
         let parameter = &model.candidates()[index].parameters[0];
         let mut term = model.candidates()[index].neutral(index);
         term.values[0] += 0.01 * parameter.size;
-        let told = model.response(&[term]);
+        let predicted = model.response(&[term]);
         let mut difference = 0.0f64;
         for at in 0..recording.len() {
             let mut there = row(&campaign, &calibration, &compensation, at);
             let before = there.tip();
             change(&mut there, at, 0.01 * parameter.size);
-            difference = difference.max((there.tip() - before - told.fixed_rows::<3>(3 * at)).norm());
+            difference = difference.max((there.tip() - before - predicted.fixed_rows::<3>(3 * at)).norm());
         }
-        // yields are to first order: a hundredth of them is lost
-        assert!(difference < 0.01 * told.amax(), "{effect} {location}: {difference} of {}", told.amax());
-        assert!(told.amax() > 0.0, "{effect} {location}");
+        // deflections are to first order: a hundredth of them is lost
+        assert!(
+            difference < 0.01 * predicted.amax(),
+            "{effect} {location}: {difference} of {}",
+            predicted.amax()
+        );
+        assert!(predicted.amax() > 0.0, "{effect} {location}");
     }
 }
 
@@ -196,7 +200,7 @@ fn a_link_bends_about_its_joint_and_clamps_move_the_other_way() {
     let index = find(&model, "link_flexibility", "joint 3");
     let mut term = model.candidates()[index].neutral(index);
     term.values[0] = 1e-7;
-    let told = model.response(&[term]);
+    let predicted = model.response(&[term]);
     for at in [0, 17, 40] {
         let there = row(&campaign, &calibration, &compensation, at);
         let mut kinematics = Kinematics::new(&there.setup);
@@ -215,18 +219,18 @@ fn a_link_bends_about_its_joint_and_clamps_move_the_other_way() {
         let turn = Rotation3::new((moment - axis * axis.dot(&moment)) * 1e-7);
         let tip = there.tip();
         let expected = turn * (tip - origin) + origin - tip;
-        let found: Vector3<f64> = told.fixed_rows::<3>(3 * at).into();
+        let found: Vector3<f64> = predicted.fixed_rows::<3>(3 * at).into();
         assert!((found - expected).norm() < 1e-3 * expected.norm() + 1e-12, "{found} {expected}");
     }
     for (effect, location) in [("clamp_pose", "clamp 2"), ("clamp_shift", "clamp 2, after pose 16")] {
         let index = find(&model, effect, location);
         let mut term = model.candidates()[index].neutral(index);
         term.values[0] = 5.0 * UM;
-        let told = model.response(&[term]);
+        let predicted = model.response(&[term]);
         for (at, entry) in campaign.measurements.rows.iter().enumerate() {
-            let is_moved = campaign.measurements.groups[entry.group].name == "clamp 2"
+            let is_moved = campaign.measurements.groups[entry.group].name.to_string() == "clamp 2"
                 && (effect == "clamp_pose" || at > 15);
-            assert_eq!(told[3 * at], if is_moved { -5.0 * UM } else { 0.0 }, "{effect} {at}");
+            assert_eq!(predicted[3 * at], if is_moved { -5.0 * UM } else { 0.0 }, "{effect} {at}");
         }
     }
 }

@@ -52,6 +52,7 @@ fn as_if(model: &CalibrationModel, candidate: usize) -> Finding {
         explains: 0.0,
         found_in_folds: None,
         held_out_loss: None,
+        written_to: found.effect.written_to,
         next: None,
         parts,
     };
@@ -77,10 +78,10 @@ fn every_effect_has_words_and_its_number() {
     for (index, candidate) in named {
         let effect = candidate.effect;
         let finding = as_if(&model, index);
-        let words = finding.description.to_string();
+        let text = finding.description.to_string();
         let is_bare = matches!(model.law(index), Law::MassesUnknown(_));
-        assert!(is_bare || words.contains('±') || words.contains(" to "), "{effect}: {words}");
-        assert!(!words.contains("NaN") && !words.contains('_'), "{effect}: {words}");
+        assert!(is_bare || text.contains('±') || text.contains(" to "), "{effect}: {text}");
+        assert!(!text.contains("NaN") && !text.contains('_'), "{effect}: {text}");
         assert!(!(effect.cause_at)(&candidate.location).contains('_'));
         if !effects.contains(&effect) {
             effects.push(effect);
@@ -93,7 +94,7 @@ fn every_effect_has_words_and_its_number() {
 fn sentences_are_those_of_the_laws() {
     let campaign = clocked();
     let (model, _) = modelled(&campaign, Mode::None);
-    let said =
+    let described =
         |effect: &str, location: &str| as_if(&model, find(&model, effect, location)).description.to_string();
     let cases = [
         (
@@ -157,7 +158,7 @@ fn sentences_are_those_of_the_laws() {
         ),
     ];
     for (effect, location, expected) in cases {
-        assert_eq!(said(effect, location), expected);
+        assert_eq!(described(effect, location), expected);
     }
 }
 

@@ -1,4 +1,4 @@
-//! What the engine is told: weights, further knowledge, and which data belong together.
+//! What the engine gets: weights, further knowledge, and which data belong together.
 
 use super::happened::sockets;
 use super::*;
@@ -131,7 +131,7 @@ fn what_is_known_beforehand_is_a_background() {
     // five standard errors off, and as firm as the data
     let sd = own.std_error.unwrap();
     let mean = own.value + 5.0 * sd;
-    campaign.wishes.priors.push((parameter, mean, sd));
+    campaign.constraints.priors.push((parameter, mean, sd));
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
     let (_, evidence) = CalibrationModel::new(&campaign, calibration.clone()).unwrap();
     assert_eq!(evidence.residual.len(), 3 * campaign.measurements.len());

@@ -27,7 +27,7 @@ fn found(campaign: &Campaign) -> (Vec<String>, Option<String>) {
 
 /// What is named in the end, after a second look at the rows near a shift.
 fn named(campaign: &Campaign) -> Vec<String> {
-    let found = diagnose(campaign, Mode::Fea, &Options::default()).unwrap();
+    let found = diagnose_as_recorded(campaign, Mode::Fea, &Options::default()).unwrap();
     let name = |finding: &Finding| format!("{}: {}", finding.effect, finding.location);
     found.diagnosis.findings.iter().map(name).collect()
 }
@@ -180,7 +180,7 @@ fn no_mass_is_negative_and_no_drive_turns_against_its_load() {
     tip.columns[0].add_to(&mut moved, -3.0 * modelled);
     let lighter = |row: usize| moved.fixed_rows::<3>(3 * row).into_owned();
     let campaign = recorded(&campaign, &lighter, NOISE, 1);
-    let found = diagnose(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let found = diagnose_as_recorded(&campaign, Mode::Fea, &Options::default()).unwrap();
     let compliance = &found.model.calibration.setup.compliance;
     assert!(compliance.iter().all(|c| *c >= 0.0), "{compliance:?}");
     for finding in &found.diagnosis.findings {

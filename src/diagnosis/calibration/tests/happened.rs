@@ -4,7 +4,7 @@
 use super::changed::{Case, Row, assert_changes};
 use super::*;
 use crate::calibration::Compensation;
-use crate::calibration::campaign::Distance;
+use crate::calibration::campaign::{Distance, GroupName};
 use crate::spatial::{Pose, exponential};
 
 fn axis(axis: usize) -> Vector3<f64> {
@@ -25,8 +25,8 @@ fn clamps_and_base_move_as_a_whole() {
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
     let recording = &campaign.measurements;
     let still = Vector3::zeros();
-    let is_there = |row: usize| recording.groups[recording.rows[row].group].name == "clamp 2";
-    let device = recording.groups.iter().find(|group| group.name == "clamp 2").unwrap().device;
+    let is_there = |row: usize| recording.groups[recording.rows[row].group].name.to_string() == "clamp 2";
+    let device = recording.groups.iter().find(|group| group.name.to_string() == "clamp 2").unwrap().device;
     let cases: Vec<Case> = vec![
         (
             "clamp_pose",
@@ -138,9 +138,9 @@ fn what_warms_up_grows_with_its_clock() {
 /// The clamps as sockets of two plates; that the ball is not quite in them moves no column.
 pub(super) fn sockets() -> Campaign {
     let mut campaign = clamps(12);
-    let names = ["front/0", "front/1", "front/2", "back/0", "back/1"];
-    for (group, name) in campaign.measurements.groups.iter_mut().zip(names) {
-        group.name = name.into();
+    let names = [("front", "0"), ("front", "1"), ("front", "2"), ("back", "0"), ("back", "1")];
+    for (group, (placement, socket)) in campaign.measurements.groups.iter_mut().zip(names) {
+        group.name = GroupName::socket(placement, socket);
     }
     campaign.measurements.targets = Targets::Sockets(Vec::new());
     campaign

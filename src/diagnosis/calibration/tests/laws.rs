@@ -1,6 +1,6 @@
 //! Laws that no library has, concealed in campaigns.
 
-use super::super::configuration::Configuration;
+use super::super::model::Configuration;
 use super::*;
 use crate::inference::law::{Constant, Form, Law};
 use crate::units::DEG;
@@ -18,7 +18,7 @@ fn concealed(
     let calibration = calibrate(&clean, Mode::Fea, &Options::default()).unwrap();
     let context = Context::new(&clean, &calibration).unwrap();
     let campaign = recorded(&clean, &|row| by(&context.configurations[row]), NOISE, seed);
-    let found = diagnose(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let found = diagnose_as_recorded(&campaign, Mode::Fea, &Options::default()).unwrap();
     let proposed = found.law.as_ref().expect("something is left");
     let law = proposed.law.as_ref().unwrap_or_else(|refusal| panic!("{refusal:?}"));
     then(law, proposed.held_out.unwrap(), &found);
@@ -73,7 +73,7 @@ fn where_nothing_is_left_there_is_no_law() {
     };
     for by in [&none as &dyn Fn(usize) -> Vector3<f64>, &warms] {
         let campaign = recorded(&clean, by, NOISE, 7);
-        let found = diagnose(&campaign, Mode::Fea, &Options::default()).unwrap();
+        let found = diagnose_as_recorded(&campaign, Mode::Fea, &Options::default()).unwrap();
         assert!(found.law.is_none() && found.diagnosis.discrepancy.is_none());
     }
 }

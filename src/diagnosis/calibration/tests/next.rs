@@ -16,7 +16,7 @@ fn one_clamp_more_tells_which_of_a_few_is_misplaced() {
     let off = Vector3::new(200.0, 300.0, 100.0) * UM;
     let by = |row: usize| if campaign.measurements.rows[row].group == 2 { off } else { Vector3::zeros() };
     let campaign = recorded(&campaign, &by, 15.0 * UM, 3);
-    let found = diagnose(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let found = diagnose_as_recorded(&campaign, Mode::Fea, &Options::default()).unwrap();
     let first = &found.diagnosis.findings[0];
     assert_eq!(first.effect.name, "clamp_pose");
     assert!(first.others().iter().any(|(effect, _)| effect.name == "clamp_pose"));

@@ -3,9 +3,9 @@
 use std::io::Write;
 use std::path::Path;
 
+use super::super::diagnose::prepared::Prepared;
 use super::*;
 use crate::diagnosis::calibration::Neighbours;
-use crate::diagnosis::calibration::prepared::Prepared;
 use crate::inference::{Effect, Linearised, UNKNOWN, infer};
 use crate::units::MM;
 

@@ -1,4 +1,4 @@
-//! What was found in one campaign, foretold for the poses of another one.
+//! What was found in one campaign, predicted for the poses of another one.
 
 use super::*;
 use crate::calibration::Compensation;
@@ -19,8 +19,8 @@ fn points(campaign: &Campaign) -> &[Vector3<f64>] {
 }
 
 /// Root mean square of a coordinate's error, µm.
-fn error(foretold: &[Vector3<f64>], truth: &[Vector3<f64>]) -> f64 {
-    let squares: f64 = foretold.iter().zip(truth).map(|(a, b)| (a - b).norm_squared()).sum();
+fn error(predicted: &[Vector3<f64>], truth: &[Vector3<f64>]) -> f64 {
+    let squares: f64 = predicted.iter().zip(truth).map(|(a, b)| (a - b).norm_squared()).sum();
     (squares / (3 * truth.len()) as f64).sqrt() / UM
 }
 
@@ -36,15 +36,15 @@ fn a_gear_acts_in_other_poses_and_a_misplaced_clamp_does_not() {
     let rows = &campaign.measurements.rows;
     let off = Vector3::new(400.0, -300.0, 200.0) * UM;
     // the ball is where the gear puts it; the clamp only says otherwise
-    let said = |row: usize| turned(row) + if rows[row].group == 1 { off } else { Vector3::zeros() };
+    let stated = |row: usize| turned(row) + if rows[row].group == 1 { off } else { Vector3::zeros() };
     let truth = recorded(&campaign, &turned, 0.0, 1);
-    let [recorded, _] = halves(&recorded(&campaign, &said, 10.0 * UM, 1));
+    let [recorded, _] = halves(&recorded(&campaign, &stated, 10.0 * UM, 1));
     let [_, asked] = halves(&truth);
-    let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
+    let found = diagnose_as_recorded(&recorded, Mode::Fea, &Options::default()).unwrap();
     let effects: Vec<&str> = found.diagnosis.findings.iter().map(|finding| finding.effect.name).collect();
     assert!(effects.contains(&"transmission_error") && effects.contains(&"clamp_pose"), "{effects:?}");
-    let foretold = found.predicted(&asked).unwrap();
-    let with = error(&foretold, points(&asked));
+    let predicted = found.predicted(&asked).unwrap();
+    let with = error(&predicted, points(&asked));
     assert!(with < 8.0, "{with} µm");
     // without what was found
     let mut nothing = found.clone();
@@ -58,7 +58,7 @@ fn a_gear_acts_in_other_poses_and_a_misplaced_clamp_does_not() {
 fn another_force_bends_the_rod_by_its_compliance() {
     let campaign = clamps(25);
     let recorded = recorded(&campaign, &|_| Vector3::zeros(), 5.0 * UM, 2);
-    let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
+    let found = diagnose_as_recorded(&recorded, Mode::Fea, &Options::default()).unwrap();
     assert!(found.diagnosis.findings.is_empty());
     let more = Vector3::new(0.0, 1.5, -2.0);
     let pushed = Campaign { contact_force: campaign.contact_force.map(|f| f + more), ..campaign.clone() };
@@ -74,7 +74,7 @@ fn another_force_bends_the_rod_by_its_compliance() {
             let configuration = &context.configurations[row];
             still[row]
                 + configuration.in_world(&compliance.force) * force
-                + configuration.yielding(&configuration.tip, &force)
+                + configuration.joint_deflection(&configuration.tip, &force)
         })
         .collect();
     let largest = moved.iter().zip(&still).map(|(a, b)| (a - b).norm() / UM).fold(0.0, f64::max);
@@ -92,16 +92,16 @@ fn a_drift_goes_on_with_its_clock_and_asks_for_it() {
     let drift = |row: usize| per_kelvin * (campaign.measurements.rows[row].temperature.unwrap() - 21.0);
     let [recorded, _] = halves(&recorded(&campaign, &drift, 5.0 * UM, 3));
     let [_, mut asked] = halves(&campaign);
-    let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
+    let found = diagnose_as_recorded(&recorded, Mode::Fea, &Options::default()).unwrap();
     assert_eq!(found.diagnosis.findings[0].effect.name, "thermal_drift");
     // 4 K warmer than the mean of the recording, whatever that is with which drifts are compared
     let mean = recorded.measurements.rows.iter().filter_map(|row| row.temperature).sum::<f64>()
         / recorded.measurements.len() as f64;
-    let foretold = |kelvin: f64, asked: &mut Campaign| {
+    let predicted = |kelvin: f64, asked: &mut Campaign| {
         asked.measurements.rows.iter_mut().for_each(|row| row.temperature = Some(mean + kelvin));
         found.predicted(asked).unwrap()
     };
-    let (cold, warm) = (foretold(0.0, &mut asked), foretold(4.0, &mut asked));
+    let (cold, warm) = (predicted(0.0, &mut asked), predicted(4.0, &mut asked));
     let drifted: Vec<Vector3<f64>> = cold.iter().map(|at| at + per_kelvin * 4.0).collect();
     let off = error(&warm, &drifted);
     assert!(off < 10.0, "{off} µm of 400");
@@ -124,10 +124,10 @@ fn a_base_that_moved_stays_there() {
     let shifted = |row: usize| if row >= count / 2 { by } else { Vector3::zeros() };
     let [recorded, _] = halves(&recorded(&campaign, &shifted, 10.0 * UM, 4));
     let [_, asked] = halves(&campaign);
-    let found = diagnose(&recorded, Mode::Fea, &Options::default()).unwrap();
+    let found = diagnose_as_recorded(&recorded, Mode::Fea, &Options::default()).unwrap();
     assert_eq!(found.diagnosis.findings[0].effect.name, "base_shift", "{:?}", found.diagnosis.findings);
-    let foretold = found.predicted(&asked).unwrap();
+    let predicted = found.predicted(&asked).unwrap();
     let moved: Vec<Vector3<f64>> = points(&asked).iter().map(|point| point + by).collect();
-    let off = error(&foretold, &moved);
+    let off = error(&predicted, &moved);
     assert!(off < 20.0, "{off} µm");
 }

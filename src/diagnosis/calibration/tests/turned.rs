@@ -92,8 +92,8 @@ fn a_wave_between_two_steps_says_where_it_is() {
     let wave = |q: f64| 3.0 * ((7.5 + off) * (q - middle) + 7.5 * middle + 0.4).sin();
     let angles: Vec<f64> = (0..200).map(|k| low + (high - low) * f64::from(k) / 199.0).collect();
     let terms = DMatrix::from_fn(200, 4, |row, k| gear.term(k, angles[row]));
-    let told = DVector::from_iterator(200, angles.iter().map(|&q| wave(q)));
-    let values = crate::linalg::least_squares(&terms, &told).unwrap();
+    let predicted = DVector::from_iterator(200, angles.iter().map(|&q| wave(q)));
+    let values = crate::linalg::least_squares(&terms, &predicted).unwrap();
     let (frequency, gradient) = gear.frequency(values.as_slice());
     assert!((frequency - 7.5 - off).abs() < 0.01 * off, "{frequency}");
     for k in 0..4 {
@@ -187,7 +187,7 @@ fn one_clamp_may_push_harder_than_the_others() {
     let push = |axis: usize| {
         move |r: &mut Row<'_>, row: usize, v: f64| {
             let group = &recording.groups[recording.rows[row].group];
-            if group.name != "clamp 4" {
+            if group.name.to_string() != "clamp 4" {
                 return;
             }
             let pull = group.device.rotation.column(axis) * v;

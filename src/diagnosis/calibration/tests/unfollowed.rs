@@ -1,7 +1,7 @@
 //! What a hypothesis cannot follow, against a calibration that absorbs its columns too.
 
+use super::super::next::unfollowed::Unfollowed;
 use super::*;
-use crate::diagnosis::calibration::unfollowed::Unfollowed;
 
 #[test]
 fn unfollowed_is_what_a_calibration_that_absorbs_the_other_hypothesis_leaves() {

@@ -1,12 +1,13 @@
 //! What a display makes of a displacement that came by another one: play of a stylus, lag.
 
-use super::entry::{Context, Entry, RigEffect, alternative, candidate, of, parameter, said};
+use super::entry::{
+    Context, Entry, RigEffect, Usual, alternative, candidate, of_action, out_of_the_readings, parameter, size,
+};
 use super::places::measured_channels;
-use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::display::{Display, Follows};
+use crate::diagnosis::rig::mechanics::action::Action;
+use crate::diagnosis::rig::mechanics::display::{Display, Follows};
 use crate::inference::{Candidate, Effect, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::spatial::Axis;
-use crate::units::UM;
 
 /// Play of a stylus, a lever or a dial as a share of the largest reading.
 const PLAY: f64 = 0.01;
@@ -31,7 +32,10 @@ pub static SENSOR_LAG: RigEffect = RigEffect {
         summary: "a display follows late: after its play, or read before it has settled",
         formula: "y ← min(max(y, u − p/2), u + p/2) along a run, p the whole play; or y = u − λ·(u − u′), u′ before",
         prior: "play of 1 % of the largest reading: dial gauges reverse to 1 to 5 µm; or λ 3 %",
-        parameters: &[("play_um", "whole play"), ("fraction", "share of each change that is not shown yet")],
+        parameters: &[
+            (&["play_um"], "whole play"),
+            (&["fraction"], "share of each change that is not shown yet"),
+        ],
         needs: "a rod file; loads that go up and down (column `phase`)",
         cause: "a display that follows late",
         cause_at: |location| format!("a display that follows late ({location})"),
@@ -40,28 +44,34 @@ pub static SENSOR_LAG: RigEffect = RigEffect {
         seen_along: |_| vec![Variable::Phase, Variable::Load],
         direct_check: None,
     },
+    usual: &[Usual::Share(PLAY), Usual::Share(LAG)],
     needs_rod: true,
     candidates: displays,
     missing: |context| match context.data.iter().any(|d| d.imposed.is_some()) {
         true => "the displacement was imposed",
         false => "no unloading was recorded",
     },
-    observed: |finding, _| {
+    observed: |finding, model| {
         let display = match &finding.location {
             Location::Channel { channel, .. } => format!("Display d{channel}"),
             _ => "Every display".to_owned(),
         };
-        match finding.quantity("play_um") {
-            Some(_) => {
-                let play = said(finding, "play_um", "µm");
-                format!("{display} follows the rod only after a play of {play}")
+        let is_late = |action: &Action| match action {
+            Action::Display(display) => display.follows() == Follows::Later,
+            _ => false,
+        };
+        match of_action(finding, model, is_late) {
+            Some(share) => {
+                let share = share.map(|share| 100.0 * share).say("%");
+                format!("{display} lags: {share} of each change of the load is not shown yet when it is read")
             }
             None => {
-                let share = of(finding, "fraction").map(|share| 100.0 * share).say("%");
-                format!("{display} lags: {share} of each change of the load is not shown yet when it is read")
+                let play = size(finding, "play_um", "µm");
+                format!("{display} follows the rod only after a play of {play}")
             }
         }
     },
+    write: out_of_the_readings,
 };
 
 /// All displays alike, and each by itself, in each form. Nothing where no load is taken off again:
@@ -72,8 +82,8 @@ fn displays(context: &mut Context) -> Vec<Entry> {
         return Vec::new();
     }
     let largest = context.largest_reading();
-    let play = || parameter("play_um", UM, 0.0, PLAY * largest, (0.0, MOST_PLAY * largest));
-    let lag = || parameter("fraction", 1.0, 0.0, LAG, (0.0, MOST_LAG));
+    let play = || parameter("play_um", 0.0, PLAY * largest, (0.0, MOST_PLAY * largest));
+    let lag = || parameter("fraction", 0.0, LAG, (0.0, MOST_LAG));
     let forms = [
         (None, Follows::BehindPlay, play()),
         (Some(FORMS[0]), Follows::BehindPlayOfBefore, play()),
@@ -81,10 +91,10 @@ fn displays(context: &mut Context) -> Vec<Entry> {
     ];
     let channels = measured_channels(data);
     let mut entries = Vec::new();
-    for ((form, follows, size), often) in forms.into_iter().zip(OFTEN) {
-        let mut add = |location: Location, weight: f64, is_of: &dyn Fn(Axis) -> bool| {
-            let display = Display::of(data, follows, |d| is_of(d.channel));
-            let candidate = candidate(&SENSOR_LAG.effect, location, vec![size.clone()]);
+    for ((form, follows, usual), often) in forms.into_iter().zip(OFTEN) {
+        let mut add = |location: Location, weight: f64, is_its: &dyn Fn(Axis) -> bool| {
+            let display = Display::of(data, follows, |d| is_its(d.channel));
+            let candidate = candidate(&SENSOR_LAG.effect, location, vec![usual.clone()]);
             let candidate = Candidate { weight, ..candidate };
             entries.push(alternative((candidate, vec![Action::Display(display.into())])));
         };

@@ -3,13 +3,17 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::entry::{Context, Entry, RigEffect, UNBOUNDED, entry, of, parameter};
+use super::entry::{
+    Context, Entry, RigEffect, UNBOUNDED, Usual, entry, number, out_of_the_readings, parameter,
+};
 use super::places::runs_by_sensor;
-use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::datum::Datum;
-use crate::inference::{Effect, Estimate, FindingPart, Kind, Location, Reported, Run, Variable, WrittenTo};
+use crate::diagnosis::rig::mechanics::action::Action;
+use crate::diagnosis::rig::recording::columns::column;
+use crate::diagnosis::rig::recording::datum::Datum;
+use crate::inference::{
+    Effect, Estimate, FindingPart, Kind, Location, Quantity, Reported, Run, Variable, WrittenTo,
+};
 use crate::spatial::Axis;
-use crate::units::UM;
 
 /// Slip of a bond or a clamp as a share of the largest reading.
 const STEP: f64 = 0.05;
@@ -29,10 +33,10 @@ pub static SLIP: RigEffect = RigEffect {
         formula: "y + s for the rest of a run, or of the file",
         prior: "5 % of the largest reading: a bond or a clamp that slips; a knock may be more",
         parameters: &[
-            ("um", "shift"),
-            ("dx_um", "shift of dx, at the same row"),
-            ("dy_um", "shift of dy, at the same row"),
-            ("dz_um", "shift of dz, at the same row"),
+            (&["um"], "shift"),
+            (&["dx_um"], "shift of dx, at the same row"),
+            (&["dy_um"], "shift of dy, at the same row"),
+            (&["dz_um"], "shift of dz, at the same row"),
         ],
         needs: "runs with two readings on either side",
         cause: "a slip of the clamp or of a sensor",
@@ -42,29 +46,36 @@ pub static SLIP: RigEffect = RigEffect {
         seen_along: |_| vec![Variable::Order],
         direct_check: None,
     },
+    usual: &[Usual::Share(STEP)],
     needs_rod: false,
     candidates: slips,
     missing: |_| "no run has two readings on either side of a slip",
     observed: |finding, _| {
-        let besides = |channel: Axis| {
-            let shift = finding.quantity(channel_um(channel))?;
-            Some(format!(", d{channel} by {}", shift.say("µm")))
-        };
-        let besides: String = Axis::ALL.into_iter().filter_map(besides).collect();
-        format!("The readings jump by {} ({}){besides}", of(finding, "um").say("µm"), finding.location)
+        let others = finding.parts.iter().zip(&finding.estimates).skip(1);
+        let mut others: Vec<(Axis, Quantity)> = others
+            .filter_map(|(part, shift)| Some((shifted_channel(&part.location)?, shift.quantity())))
+            .collect();
+        others.sort_by_key(|(channel, _)| *channel);
+        let one = |(channel, shift): &(Axis, Quantity)| format!(", d{channel} by {}", shift.say("µm"));
+        let besides: String = others.iter().map(one).collect();
+        format!("The readings jump by {} ({}){besides}", number(finding, "um").say("µm"), finding.location)
     },
+    write: out_of_the_readings,
 };
 
-/// The shift of a channel beside that of another one, at the same row.
-fn channel_um(channel: Axis) -> &'static str {
-    ["dx_um", "dy_um", "dz_um"][channel.index()]
+/// The channel that a slip shifts.
+fn shifted_channel(location: &Location) -> Option<Axis> {
+    match location {
+        Location::AfterRow { run, channel, .. } => Some(channel.unwrap_or(run.axis)),
+        _ => None,
+    }
 }
 
 /// Estimates of the slips that are one finding: all but the first are those of their channels.
 pub(in crate::diagnosis::rig) fn by_channel(parts: &[FindingPart], estimates: &mut [Estimate]) {
     for (part, estimate) in parts.iter().zip(estimates).skip(1) {
-        if let Location::AfterRow { run, channel, .. } = &part.location {
-            estimate.name = channel_um(channel.unwrap_or(run.axis)).into();
+        if let Some(channel) = shifted_channel(&part.location) {
+            estimate.name = column(channel);
         }
     }
 }
@@ -83,7 +94,7 @@ fn slips(context: &mut Context) -> Vec<Entry> {
             let is_other = before.channel != before.direction.axis;
             let channel = is_other.then_some(before.channel);
             let location = Location::AfterRow { run: run.clone(), row: before.row, channel, for_good: false };
-            let um = parameter("um", UM, 0.0, size, UNBOUNDED);
+            let um = parameter("um", 0.0, size, UNBOUNDED);
             entry(&SLIP, location, um, Action::Step(Arc::clone(&sequence), first))
         })
     };
@@ -134,7 +145,7 @@ fn for_good(data: &[Datum], size: f64) -> Vec<Entry> {
             let run = Run { axis: before.direction.axis, name: before.run_name() };
             let (row, channel) = (before.row, Some(channel));
             let location = Location::AfterRow { run, row, channel, for_good: true };
-            let um = parameter("um", UM, 0.0, size, UNBOUNDED);
+            let um = parameter("um", 0.0, size, UNBOUNDED);
             entries.push(entry(&SLIP, location, um, Action::Step(Arc::clone(&sequence), from)));
         }
     }

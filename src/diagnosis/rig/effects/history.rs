@@ -1,12 +1,15 @@
 //! What the rod makes of its loads and of their history: curvature, creep, hysteresis.
 
-use super::entry::{Context, Entry, RigEffect, along_the_load, alternative, entry, of, parameter};
-use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::load_history::{
+use super::entry::{
+    Context, Entry, RigEffect, Usual, along_the_load, alternative, entry, nowhere, number, of_action,
+    parameter,
+};
+use crate::diagnosis::rig::mechanics::action::Action;
+use crate::diagnosis::rig::mechanics::load_history::{
     Clock, History, Loop, Memory, Onset, creep, hysteresis, is_stated, onsets, warmth,
 };
+use crate::diagnosis::rig::mechanics::recovery::recovery;
 use crate::diagnosis::rig::model::{Body, RigModel};
-use crate::diagnosis::rig::recovery::recovery;
 use crate::inference::{Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::units::significant;
 
@@ -34,7 +37,7 @@ pub static NONLINEAR_STIFFNESS: RigEffect = RigEffect {
         summary: "the stiffness depends on the load",
         formula: "u = C·F·(1 + k₂·F²), or u = C·F·(1 + k₁·|F|)",
         prior: "5 % of the displacement at the largest load",
-        parameters: &[("per_n2", "k₂, coefficient of F²"), ("per_n", "k₁, coefficient of |F|")],
+        parameters: &[(&["per_n2"], "k₂, coefficient of F²"), (&["per_n"], "k₁, coefficient of |F|")],
         needs: "two sizes of load",
         cause: "a stiffness that depends on the load",
         cause_at: |_| "a stiffness that depends on the load".into(),
@@ -43,10 +46,12 @@ pub static NONLINEAR_STIFFNESS: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(CURVATURE)],
     needs_rod: false,
     candidates: curvature,
     missing: |_| "only one size of load was applied",
     observed: observed_curvature,
+    write: nowhere,
 };
 
 /// The deflection grows under a constant load.
@@ -58,8 +63,8 @@ pub static CREEP: RigEffect = RigEffect {
         formula: "u = C·F·(1 + k·log₁₀(1 + t/t₀)), t₀ 1, 10, 60 or 600 s, by several clocks",
         prior: "3 % per decade of time: bondlines and laminates",
         parameters: &[
-            ("per_decade", "k, growth per decade of time"),
-            ("onset_s", "how long before the first reading of a run its load was hung, by that clock"),
+            (&["per_decade"], "k, growth per decade of time"),
+            (&["onset_s"], "how long before the first reading of a run its load was hung, by that clock"),
         ],
         needs: "times that differ (column `time_s`); `loaded_at_s` says when each load was hung",
         cause: "creep",
@@ -69,6 +74,7 @@ pub static CREEP: RigEffect = RigEffect {
         seen_along: |_| vec![Variable::TimeInRun],
         direct_check: None,
     },
+    usual: &[Usual::Share(PER_DECADE)],
     needs_rod: false,
     candidates: creeping,
     missing: |_| "no times were recorded (column `time_s`), or they do not differ",
@@ -77,7 +83,7 @@ pub static CREEP: RigEffect = RigEffect {
             Some(History::Creep(clock, _)) => clock.name(),
             _ => "under load",
         };
-        let growth = of(finding, "per_decade").map(|share| 100.0 * share).say("%");
+        let growth = number(finding, "per_decade").map(|share| 100.0 * share).say("%");
         match model.data().iter().any(|d| d.imposed.is_some()) {
             true => {
                 format!("Under a held displacement the load falls by {growth} per decade of time {since}")
@@ -85,6 +91,7 @@ pub static CREEP: RigEffect = RigEffect {
             false => format!("The deflections grow by {growth} per decade of time {since}"),
         }
     },
+    write: nowhere,
 };
 
 /// A rod that is softer when it is warm.
@@ -95,7 +102,7 @@ pub static THERMAL_SOFTENING: RigEffect = RigEffect {
         summary: "the rod is softer when it is warmer",
         formula: "u = C·F·(1 + k·(T − T̄)), T̄ the mean temperature of the recording",
         prior: "0.05 % per kelvin: stainless steels lose 0.04 % (Ledbetter, J. Appl. Phys. 52, 1981, 1587)",
-        parameters: &[("per_k", "k, growth of the deflection per kelvin")],
+        parameters: &[(&["per_k"], "k, growth of the deflection per kelvin")],
         needs: "temperatures that differ (column `temperature_c`)",
         cause: "moduli that fall with temperature",
         cause_at: |_| "moduli that fall with temperature".into(),
@@ -104,10 +111,11 @@ pub static THERMAL_SOFTENING: RigEffect = RigEffect {
         seen_along: |_| vec![Variable::Temperature],
         direct_check: None,
     },
+    usual: &[Usual::Share(PER_KELVIN)],
     needs_rod: false,
     candidates: |context| {
         // a laminate may stiffen: ten times the usual either way
-        let per_kelvin = parameter("per_k", 1.0, 0.0, PER_KELVIN, (-10.0 * PER_KELVIN, 10.0 * PER_KELVIN));
+        let per_kelvin = parameter("per_k", 0.0, PER_KELVIN, (-10.0 * PER_KELVIN, 10.0 * PER_KELVIN));
         let softening = |memory| {
             let action = Action::Memory(memory, History::Temperature);
             entry(&THERMAL_SOFTENING, Location::Part(Part::Rod), per_kelvin, action)
@@ -116,9 +124,10 @@ pub static THERMAL_SOFTENING: RigEffect = RigEffect {
     },
     missing: |_| "no temperatures were recorded (column `temperature_c`), or they do not differ",
     observed: |finding, _| {
-        let growth = of(finding, "per_k").map(|share| 100.0 * share).say("%");
+        let growth = number(finding, "per_k").map(|share| 100.0 * share).say("%");
         format!("The deflections grow by {growth} per kelvin")
     },
+    write: nowhere,
 };
 
 /// The way down is not the way up.
@@ -129,7 +138,7 @@ pub static HYSTERESIS: RigEffect = RigEffect {
         summary: "unloading differs from loading, and not by friction",
         formula: "a loop h of full scale wide at half load, in seven forms",
         prior: "2 % of full scale: 0.1 % of a load cell, some per cent of bonds and clamps",
-        parameters: &[("fraction", "h, width of the loop over full scale")],
+        parameters: &[(&["fraction"], "h, width of the loop over full scale")],
         needs: "unloading (column `phase`)",
         cause: "hysteresis",
         cause_at: |_| "hysteresis".into(),
@@ -138,15 +147,17 @@ pub static HYSTERESIS: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(LOOP)],
     needs_rod: false,
     candidates: lagging,
     missing: |_| "no readings were taken while unloading (column `phase`)",
     observed: |finding, model| {
         let is_open = matches!(history(finding, model), Some(History::Loop(Loop::Remanent)));
         let at = if is_open { "zero load" } else { "half load" };
-        let share = of(finding, "fraction").map(|share| 100.0 * share).say("%");
+        let share = number(finding, "fraction").map(|share| 100.0 * share).say("%");
         format!("The unloading curve lies above the loading curve, by {share} of full scale at {at}")
     },
+    write: nowhere,
 };
 
 /// Quadratic as a symmetric body's is, and linear as a load cell's (its curvature has a direction).
@@ -154,7 +165,7 @@ fn curvature(context: &mut Context) -> Vec<Entry> {
     let largest = context.largest_load();
     // at most nothing is left of the displacement, or ten times as much is there
     let share =
-        |name: &str, scale: f64| parameter(name, 1.0, 0.0, CURVATURE / scale, (-1.0 / scale, 10.0 / scale));
+        |name: &str, scale: f64| parameter(name, 0.0, CURVATURE / scale, (-1.0 / scale, 10.0 / scale));
     let forms = [
         (share("per_n2", largest * largest), Action::PerLoadSquared),
         (share("per_n", largest), Action::PerLoad),
@@ -169,8 +180,10 @@ fn curvature(context: &mut Context) -> Vec<Entry> {
 fn observed_curvature(finding: &Finding, model: &RigModel) -> String {
     let largest = super::entry::largest_load(model.data());
     // deflection over that of the linear rod
-    let quadratic = finding.quantity("per_n2").map(|k| k.map(|k| 1.0 + k * largest * largest));
-    let linear = finding.quantity("per_n").map(|k| k.map(|k| 1.0 + k * largest));
+    let quadratic = of_action(finding, model, |action| matches!(action, Action::PerLoadSquared));
+    let quadratic = quadratic.map(|k| k.map(|k| 1.0 + k * largest * largest));
+    let linear = of_action(finding, model, |action| matches!(action, Action::PerLoad));
+    let linear = linear.map(|k| k.map(|k| 1.0 + k * largest));
     let body = match model.body {
         Body::Rod(_) => "The rod",
         Body::Lines(_) => "The loaded part",
@@ -201,7 +214,7 @@ fn creeping(context: &mut Context) -> Vec<Entry> {
             known.push(memory.clone());
             let form = format!("{}, t0 {t0} s", clock.name());
             let location = Location::Form { part: Part::Rod, form };
-            let per_decade = parameter("per_decade", 1.0, 0.0, PER_DECADE, (0.0, 1.0));
+            let per_decade = parameter("per_decade", 0.0, PER_DECADE, (0.0, 1.0));
             let action = Action::Memory(memory, History::Creep(clock, t0));
             let (mut creep, mut actions) = alternative(entry(&CREEP, location, per_decade, action));
             if is_free {
@@ -211,7 +224,7 @@ fn creeping(context: &mut Context) -> Vec<Entry> {
                 }
                 let onset = |onset: Onset| {
                     let usual = onset.usual;
-                    let before = parameter("onset_s", 1.0, usual, usual, (0.0, LATEST * usual));
+                    let before = parameter("onset_s", usual, usual, (0.0, LATEST * usual));
                     (before, Action::Onset(onset))
                 };
                 let (parameters, more): (Vec<_>, Vec<_>) = onsets.into_iter().map(onset).unzip();
@@ -231,7 +244,7 @@ fn lagging(context: &mut Context) -> Vec<Entry> {
             "" => Location::Part(Part::Rod),
             form => Location::Form { part: Part::Rod, form: form.into() },
         };
-        let fraction = parameter("fraction", 1.0, 0.0, LOOP, (0.0, 1.0));
+        let fraction = parameter("fraction", 0.0, LOOP, (0.0, 1.0));
         let action = Action::Memory(hysteresis(context.data, shape)?, History::Loop(shape));
         Some(alternative(entry(&HYSTERESIS, location, fraction, action)))
     };

@@ -1,11 +1,12 @@
 //! What happens to a load before the rod feels it: friction, offset, play, direction.
 
 use super::entry::{
-    Context, Entry, RigEffect, along_the_load, candidate, entry, of, parameter, preferring, said,
+    Context, Entry, RigEffect, Usual, along_the_load, candidate, entry, number, of_action,
+    out_of_the_readings, parameter, preferring, size,
 };
 use super::places::{loaded_axes, sessions};
-use crate::diagnosis::rig::action::{Action, Scope};
-use crate::diagnosis::rig::datum::Datum;
+use crate::diagnosis::rig::mechanics::action::{Action, Scope};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Effect, Finding, Kind, Location, Parameter, Part, Reported, WrittenTo};
 use crate::spatial::Axis;
 use crate::units::{DEG, UM, significant};
@@ -45,9 +46,9 @@ pub static FRICTION: RigEffect = RigEffect {
             at the turn)",
         prior: "5 % of the largest load: the paper's lines cross the load axis at 0.9 to 1.1 of 20 N",
         parameters: &[
-            ("force_n", "friction force"),
-            ("presliding_um", "travel over which friction turns round, where the displacement is imposed"),
-            ("play_um", "play on either side that the motion crosses at every turn, likewise"),
+            (&["force_n"], "friction force"),
+            (&["presliding_um"], "travel over which friction turns round, where the displacement is imposed"),
+            (&["play_um"], "play on either side that the motion crosses at every turn, likewise"),
         ],
         needs: "loads; unloading distinguishes it from an offset",
         cause: "friction in the slide",
@@ -57,12 +58,13 @@ pub static FRICTION: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(SLIDE)],
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_load();
         let is_imposed = context.data.iter().any(|d| d.imposed.is_some());
         let most = if is_imposed { largest } else { MOST_OF_LOAD * largest };
-        let force = || parameter("force_n", 1.0, 0.0, SLIDE * largest, (0.0, most));
+        let force = || parameter("force_n", 0.0, SLIDE * largest, (0.0, most));
         let mut entries = of_axes(context.data, Part::Slide, &|location, scope| {
             entry(&FRICTION, location, force(), Action::Friction(scope))
         });
@@ -73,12 +75,12 @@ pub static FRICTION: RigEffect = RigEffect {
     },
     missing: |_| "no load was applied",
     observed: |finding, model| {
-        let (load, force) = (each_load(finding), said(finding, "force_n", "N"));
+        let (load, force) = (each_load(finding), size(finding, "force_n", "N"));
         if model.data().iter().any(|d| d.imposed.is_some()) {
-            let over = finding
-                .quantity("presliding_um")
+            let over = of_action(finding, model, |action| matches!(action, Action::Presliding))
                 .map_or_else(String::new, |travel| format!(" over {} of travel", travel.size().say("µm")));
-            let play = finding.quantity("play_um").map_or_else(String::new, |play| {
+            let play = of_action(finding, model, |action| matches!(action, Action::SliderPlay));
+            let play = play.map_or_else(String::new, |play| {
                 format!(", behind a play of {} on either side", play.size().say("µm"))
             });
             return format!("Friction of {force} resists the motion and turns round with it{over}{play}");
@@ -91,6 +93,7 @@ pub static FRICTION: RigEffect = RigEffect {
             false => format!("About {force} of {load} does not reach the rod (no unloading was recorded)"),
         }
     },
+    write: out_of_the_readings,
 };
 
 /// A hanger that was not counted, or a tare that is off.
@@ -102,7 +105,7 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
         formula: "F = load + f, for every load but zero",
         prior: "5 % of the largest load, as the paper's friction, which its lines cannot distinguish \
             from it",
-        parameters: &[("force_n", "added force")],
+        parameters: &[(&["force_n"], "added force")],
         needs: "loads",
         cause: "an offset of the load (hanger or tare)",
         cause_at: |location| "an offset of the load".to_owned() + &under(location),
@@ -111,25 +114,27 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(TARE)],
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_load();
         of_axes(context.data, Part::Hanger, &|location, scope| {
             let most = MOST_OF_LOAD * largest;
-            let force = parameter("force_n", 1.0, 0.0, TARE * largest, (-most, largest));
+            let force = parameter("force_n", 0.0, TARE * largest, (-most, largest));
             entry(&LOAD_OFFSET, location, force, Action::LoadOffset(scope))
         })
     },
     missing: |_| "no load was applied",
     observed: |finding, model| {
         if model.data().iter().any(|d| d.imposed.is_some()) {
-            let error = of(finding, "force_n").map(|force| -force).say("N");
+            let error = number(finding, "force_n").map(|force| -force).say("N");
             return format!("The load cell shows {error} too much{}", under(&finding.location));
         }
-        let word = if of(finding, "force_n").value >= 0.0 { "larger" } else { "smaller" };
-        let force = said(finding, "force_n", "N");
+        let word = if number(finding, "force_n").value >= 0.0 { "larger" } else { "smaller" };
+        let force = size(finding, "force_n", "N");
         format!("The true value of {} is {force} {word} than stated", each_load(finding))
     },
+    write: out_of_the_readings,
 };
 
 /// Play of the clamp.
@@ -140,7 +145,7 @@ pub static BACKLASH: RigEffect = RigEffect {
         summary: "play before the rod bends",
         formula: "y = bending + p towards the load, for every load but zero",
         prior: "2.5 % of the largest reading: 20 µm of play of a clamp where a rod bends by 0.8 mm",
-        parameters: &[("play_um", "free travel")],
+        parameters: &[(&["play_um"], "free travel")],
         needs: "a channel along a load",
         cause: "play in the clamp",
         cause_at: |location| "play in the clamp".to_owned() + &under(location),
@@ -149,20 +154,22 @@ pub static BACKLASH: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(PLAY)],
     needs_rod: false,
     candidates: |context| {
         let largest = context.largest_reading();
         let most = most_play(context.data);
         of_axes(context.data, Part::Clamp, &|location, scope| {
-            let play = parameter("play_um", UM, 0.0, PLAY * largest, (0.0, most));
+            let play = parameter("play_um", 0.0, PLAY * largest, (0.0, most));
             entry(&BACKLASH, location, play, Action::Play(scope))
         })
     },
     missing: |_| "no channel was read along a load",
     observed: |finding, _| {
-        let (under, play) = (under(&finding.location), said(finding, "play_um", "µm"));
+        let (under, play) = (under(&finding.location), size(finding, "play_um", "µm"));
         format!("The rod moves freely by {play} before it bends{under}")
     },
+    write: out_of_the_readings,
 };
 
 /// A load that is not square to {T}.
@@ -174,10 +181,10 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
         formula: "d = nominal direction, turned by φ",
         prior: "1°: what the eye allows when a load is set up",
         parameters: &[
-            ("angle_deg", "angle"),
-            ("about_x_deg", "rotation of all loads about x"),
-            ("about_y_deg", "rotation of all loads about y"),
-            ("about_z_deg", "rotation of all loads about z"),
+            (&["angle_deg"], "angle"),
+            (&["about_x_deg"], "rotation of all loads about x"),
+            (&["about_y_deg"], "rotation of all loads about y"),
+            (&["about_z_deg"], "rotation of all loads about z"),
         ],
         needs: "a rod file; channels across the loads",
         cause: "a misaligned load",
@@ -187,11 +194,12 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Angle(ALIGNMENT)],
     needs_rod: true,
     candidates: load_turns,
     missing: |_| "no measured channel would show it",
     observed: |finding, _| {
-        let angle = of(finding, "angle_deg");
+        let angle = number(finding, "angle_deg");
         match &finding.location {
             Location::LoadTurn { from, towards } => {
                 let word = if angle.value >= 0.0 { "towards" } else { "away from" };
@@ -203,6 +211,7 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
             _ => format!("All load directions are rotated together by {}", whole_turn(finding)),
         }
     },
+    write: out_of_the_readings,
 };
 
 /// Friction of loads that are measured while the displacement goes to and fro: one that turns round
@@ -220,12 +229,12 @@ fn at_turns(context: &Context, force: &Parameter) -> Vec<Entry> {
         let candidate = Candidate { is_alternative: true, weight, ..candidate };
         (candidate, vec![Action::Friction(scope), action])
     };
-    let presliding = parameter("presliding_um", UM, 0.0, PRESLIDING * largest, (0.0, largest));
+    let presliding = parameter("presliding_um", 0.0, PRESLIDING * largest, (0.0, largest));
     let mut entries = vec![of_form("with presliding".into(), RARE, presliding, Action::Presliding)];
     for share in PLAYS {
         let play = share * largest;
         // a reading is in the gap or beyond it: no step from here leads to a play of another size
-        let travel = parameter("play_um", UM, play, 0.25 * play, (play / SPAN, play * SPAN));
+        let travel = parameter("play_um", play, 0.25 * play, (play / SPAN, play * SPAN));
         let form = format!("with a play of about {} µm at every turn", significant(play / UM, 2));
         entries.push(of_form(form, RARE / PLAYS.len() as f64, travel, Action::SliderPlay));
     }
@@ -271,7 +280,7 @@ pub(super) fn pairs(from: &[Axis]) -> Vec<(Axis, Axis)> {
 
 /// An angle by which something was set up wrongly.
 pub(super) fn misalignment() -> Parameter {
-    parameter("angle_deg", DEG, 0.0, ALIGNMENT, WIDEST)
+    parameter("angle_deg", 0.0, ALIGNMENT, WIDEST)
 }
 
 /// Each load is set up by itself; where two axes were loaded their frame may be turned as a whole
@@ -294,7 +303,7 @@ fn load_turns(context: &mut Context) -> Vec<Entry> {
         });
     let whole = (axes.len() > 1).then(|| {
         let about = TURNS.map(|(name, from, towards)| {
-            (parameter(name, DEG, 0.0, ALIGNMENT, WIDEST), Action::TurnLoad([true; 3], from, towards))
+            (parameter(name, 0.0, ALIGNMENT, WIDEST), Action::TurnLoad([true; 3], from, towards))
         });
         let (parameters, actions) = about.into_iter().unzip();
         let location = Location::Part(Part::LoadFrame);

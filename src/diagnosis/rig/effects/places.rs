@@ -1,8 +1,8 @@
 //! Where effects may sit: axes, channels, runs, and stations along the rod.
 
-use crate::diagnosis::rig::datum::Datum;
-use crate::diagnosis::rig::load_history::runs;
+use crate::diagnosis::rig::mechanics::load_history::runs;
 use crate::diagnosis::rig::numbering::numbered;
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Run, RunName};
 use crate::rod::Rod;
 use crate::spatial::Axis;
@@ -23,7 +23,7 @@ pub(super) fn loaded_axes(data: &[Datum]) -> Vec<Axis> {
 }
 
 /// The channels that were read.
-pub(super) fn measured_channels(data: &[Datum]) -> Vec<Axis> {
+pub(in crate::diagnosis::rig) fn measured_channels(data: &[Datum]) -> Vec<Axis> {
     Axis::ALL.into_iter().filter(|channel| data.iter().any(|d| d.channel == *channel)).collect()
 }
 

@@ -1,8 +1,10 @@
 //! All effects of a rig, in the order of preference among equals: the single source of names.
 
 use super::entry::RigEffect;
-use super::{display, events, history, load, mistakes, sensor, structure};
-use crate::inference::Effect;
+use super::{display, events, history, load, mistakes, sensor, structure, zeros};
+use crate::diagnosis::rig::model::RigModel;
+use crate::inference::{Effect, Term, WrittenTo};
+use crate::rod::Rod;
 
 /// Every effect that the diagnosis of a rig knows.
 pub static ALL: [&RigEffect; 18] = [
@@ -41,3 +43,21 @@ pub static MISTAKES: [&Effect; 11] = [
     &mistakes::STUCK_SENSOR,
     &mistakes::SATURATED_SENSOR,
 ];
+
+/// All that may be a term of a model: the effects, and a mistake that competes with them.
+pub(in crate::diagnosis::rig) fn terms() -> impl Iterator<Item = &'static RigEffect> {
+    ALL.into_iter().chain([&zeros::ZERO_NOT_TAKEN])
+}
+
+/// What is known of an effect; `None` of a lab's own.
+pub(in crate::diagnosis::rig) fn record(effect: &Effect) -> Option<&'static RigEffect> {
+    terms().find(|known| known.effect == *effect)
+}
+
+/// Writes a term back; what no record knows fits no file.
+pub(in crate::diagnosis::rig) fn write(term: &Term, model: &RigModel, rod: &mut Rod) -> WrittenTo {
+    match record(model.candidates[term.candidate].effect) {
+        Some(effect) => (effect.write)(term, model, rod),
+        None => WrittenTo::Nowhere,
+    }
+}

@@ -3,15 +3,15 @@
 use std::collections::HashMap;
 
 use super::entry::{
-    Context, Entry, RigEffect, UNBOUNDED, along_the_load, alternative, candidate, entry, of, parameter,
+    Context, Entry, RigEffect, UNBOUNDED, Usual, along_the_load, alternative, by_action, candidate, entry,
+    number, out_of_the_readings, parameter,
 };
 use super::load::{ALIGNMENT, TURNS, WIDEST, misalignment, pairs, whole_turn};
 use super::places::measured_channels;
-use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::datum::Datum;
+use crate::diagnosis::rig::mechanics::action::{Action, DriftPer};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::spatial::Axis;
-use crate::units::{DEG, UM};
 
 /// Scale error of a displacement sensor that was not calibrated in place.
 const SCALE: f64 = 0.03;
@@ -19,7 +19,6 @@ const SCALE: f64 = 0.03;
 const NO_UNIT: (f64, f64) = (0.5, 2.0);
 /// Drift over the whole recording as a share of its largest reading.
 const DRIFT: f64 = 0.02;
-const HOUR: f64 = 3600.0;
 /// Within which share of a recording a drift settles, and what is said of it since the first
 /// reading of the file and since that of each run.
 const SETTLING: [(f64, [&str; 2]); 6] = [
@@ -61,7 +60,7 @@ pub static SENSOR_SCALE: RigEffect = RigEffect {
         summary: "a sensor shows too much or too little",
         formula: "y → s·y on one channel",
         prior: "3 %: a displacement sensor that was not calibrated in place",
-        parameters: &[("factor", "shown over true displacement")],
+        parameters: &[(&["factor"], "shown over true displacement")],
         needs: "a rod file",
         cause: "the scale of the sensor",
         cause_at: |location| format!("the scale of sensor {location}"),
@@ -70,10 +69,11 @@ pub static SENSOR_SCALE: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(SCALE)],
     needs_rod: true,
     candidates: |context| {
         let of_channel = |channel: Axis| {
-            let factor = parameter("factor", 1.0, 1.0, SCALE, NO_UNIT);
+            let factor = parameter("factor", 1.0, SCALE, NO_UNIT);
             let location = Location::Channel { channel, form: None };
             entry(&SENSOR_SCALE, location, factor, Action::SensorScale(channel))
         };
@@ -81,13 +81,14 @@ pub static SENSOR_SCALE: RigEffect = RigEffect {
     },
     missing: |_| "no readings were taken",
     observed: |finding, _| {
-        let factor = of(finding, "factor");
-        let words = match factor.value < 1.0 && factor.value > 0.5 {
+        let factor = number(finding, "factor");
+        let how = match factor.value < 1.0 && factor.value > 0.5 {
             true => factor.map(|factor| 100.0 * (1.0 - factor)).say("%") + " too low",
             false => factor.compared("too high", "too low"),
         };
-        format!("Sensor {} reads {words}", finding.location)
+        format!("Sensor {} reads {how}", finding.location)
     },
+    write: out_of_the_readings,
 };
 
 /// A sensor that is not square to {T}.
@@ -99,10 +100,10 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
         formula: "y = e·u, e turned by φ from the channel's axis",
         prior: "1°: what the eye allows when a sensor is set up",
         parameters: &[
-            ("angle_deg", "angle"),
-            ("about_x_deg", "rotation of all sensors about x"),
-            ("about_y_deg", "rotation of all sensors about y"),
-            ("about_z_deg", "rotation of all sensors about z"),
+            (&["angle_deg"], "angle"),
+            (&["about_x_deg"], "rotation of all sensors about x"),
+            (&["about_y_deg"], "rotation of all sensors about y"),
+            (&["about_z_deg"], "rotation of all sensors about z"),
         ],
         needs: "a rod file; loads across the channel",
         cause: "a misaligned sensor",
@@ -112,6 +113,7 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Angle(ALIGNMENT)],
     needs_rod: true,
     candidates: |context| {
         let turned = |(from, towards): (Axis, Axis)| {
@@ -123,7 +125,7 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
         let single = pairs(&channels).into_iter().map(turned);
         let whole = (channels.len() > 1).then(|| {
             let about = TURNS.map(|(name, from, towards)| {
-                (parameter(name, DEG, 0.0, ALIGNMENT, WIDEST), Action::TurnSensors(from, towards))
+                (parameter(name, 0.0, ALIGNMENT, WIDEST), Action::TurnSensors(from, towards))
             });
             let (parameters, actions) = about.into_iter().unzip();
             let location = Location::Part(Part::Sensors);
@@ -136,7 +138,7 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
         if finding.location == Location::Part(Part::Sensors) {
             return format!("All sensors are rotated together by {}", whole_turn(finding));
         }
-        let angle = of(finding, "angle_deg");
+        let angle = number(finding, "angle_deg");
         let word = if angle.value >= 0.0 { "towards" } else { "away from" };
         let (from, towards) = match &finding.location {
             Location::SensorTurn { from, towards } => (format!("d{from}"), format!("d{towards}")),
@@ -144,6 +146,7 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
         };
         format!("Sensor {from} is rotated by {} {word} {towards}", angle.size().say("°"))
     },
+    write: out_of_the_readings,
 };
 
 /// Readings that follow temperature, or time where no temperature was read.
@@ -156,18 +159,18 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
             duration D; zero at the first reading of file or run",
         prior: "2 % of the largest reading over the recording: steel of 0.5 m grows by 6 µm/K",
         parameters: &[
-            ("um_per_k", "drift per kelvin"),
-            ("um_per_h", "drift per hour"),
-            ("um", "drift over the recording"),
-            ("dx_um_per_k", "drift of dx per kelvin"),
-            ("dy_um_per_k", "drift of dy per kelvin"),
-            ("dz_um_per_k", "drift of dz per kelvin"),
-            ("dx_um_per_h", "drift of dx per hour"),
-            ("dy_um_per_h", "drift of dy per hour"),
-            ("dz_um_per_h", "drift of dz per hour"),
-            ("dx_um", "drift of dx over the recording"),
-            ("dy_um", "drift of dy over the recording"),
-            ("dz_um", "drift of dz over the recording"),
+            (&["um_per_k"], "drift per kelvin"),
+            (&["um_per_h"], "drift per hour"),
+            (&["um"], "drift over the recording"),
+            (&["dx_um_per_k"], "drift of dx per kelvin"),
+            (&["dy_um_per_k"], "drift of dy per kelvin"),
+            (&["dz_um_per_k"], "drift of dz per kelvin"),
+            (&["dx_um_per_h"], "drift of dx per hour"),
+            (&["dy_um_per_h"], "drift of dy per hour"),
+            (&["dz_um_per_h"], "drift of dz per hour"),
+            (&["dx_um"], "drift of dx over the recording"),
+            (&["dy_um"], "drift of dy over the recording"),
+            (&["dz_um"], "drift of dz over the recording"),
         ],
         needs: "temperatures or times (columns `temperature_c`, `time_s`)",
         cause: "thermal drift",
@@ -177,6 +180,7 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
         seen_along: |_| vec![Variable::Temperature, Variable::Time],
         direct_check: None,
     },
+    usual: &[Usual::Share(DRIFT)],
     needs_rod: false,
     candidates: drifts,
     missing: |context| {
@@ -186,16 +190,12 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
             false => "neither times nor temperatures were recorded (columns `time_s`, `temperature_c`)",
         }
     },
-    observed: |finding: &Finding, _| {
-        let per = |name: &str| match name {
-            name if name.ends_with("um_per_k") => "µm per kelvin",
-            name if name.ends_with("um_per_h") => "µm per hour",
-            _ => "µm",
-        };
-        let each = finding.estimates.iter().map(|estimate| {
-            let channel = estimate.name.split_once('_').map_or("", |(channel, _)| channel);
-            let channel = if channel == "um" { String::new() } else { format!("{channel} ") };
-            format!("{channel}{}", estimate.quantity().say(per(&estimate.name)))
+    observed: |finding: &Finding, model| {
+        let is_of_one = matches!(finding.location, Location::Channel { .. });
+        let each = by_action(finding, model).into_iter().filter_map(|(action, _, drift)| {
+            let Action::Drift(channel, per, _) = action else { return None };
+            let drift = drift.say(per.unit_name());
+            Some(if is_of_one { drift } else { format!("d{channel} {drift}") })
         });
         let drift = each.collect::<Vec<_>>().join(", ");
         match &finding.location {
@@ -207,14 +207,34 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
             _ => format!("The sensors drift by {drift}"),
         }
     },
+    write: out_of_the_readings,
 };
+
+impl DriftPer {
+    /// At the end of a parameter's name.
+    fn suffix(self) -> &'static str {
+        match self {
+            DriftPer::Kelvin => "um_per_k",
+            DriftPer::Hour => "um_per_h",
+            DriftPer::Recording => "um",
+        }
+    }
+
+    /// For people.
+    fn unit_name(self) -> &'static str {
+        match self {
+            DriftPer::Kelvin => "µm per kelvin",
+            DriftPer::Hour => "µm per hour",
+            DriftPer::Recording => "µm",
+        }
+    }
+}
 
 /// What readings drift with, and how far they drift by it.
 struct Course {
     /// Of each datum.
     values: Vec<f64>,
-    suffix: &'static str,
-    unit: f64,
+    per: DriftPer,
     size: f64,
     /// Since the first reading of the file, and since that of each run.
     forms: [Option<&'static str>; 2],
@@ -226,9 +246,9 @@ struct Course {
 fn courses(context: &Context) -> Vec<Course> {
     let data = context.data;
     let known = |value: &dyn Fn(&Datum) -> Option<f64>| data.iter().map(value).collect::<Option<Vec<f64>>>();
-    let (values, suffix, unit) = match (known(&|d| d.temperature), known(&|d| d.time)) {
-        (Some(temperature), _) => (temperature, "um_per_k", UM),
-        (None, Some(time)) => (time, "um_per_h", UM / HOUR),
+    let (values, per) = match (known(&|d| d.temperature), known(&|d| d.time)) {
+        (Some(temperature), _) => (temperature, DriftPer::Kelvin),
+        (None, Some(time)) => (time, DriftPer::Hour),
         (None, None) => return Vec::new(),
     };
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -243,20 +263,18 @@ fn courses(context: &Context) -> Vec<Course> {
         let whole = 1.0 - left(most);
         Course {
             values: values.iter().map(|&t| -left(t) / whole).collect(),
-            suffix: "um",
-            unit: UM,
+            per: DriftPer::Recording,
             size: drift,
             forms: forms.map(Some),
             is_settling: true,
         }
     };
-    let settling: Vec<Course> = match suffix {
-        "um_per_h" => SETTLING.into_iter().map(settling).collect(),
-        _ => Vec::new(),
+    let settling: Vec<Course> = match per {
+        DriftPer::Hour => SETTLING.into_iter().map(settling).collect(),
+        DriftPer::Kelvin | DriftPer::Recording => Vec::new(),
     };
     let forms = [None, Some("since the zero of each run")];
-    let at_one_rate =
-        Course { suffix, unit, size: drift / (most - least), forms, is_settling: false, values };
+    let at_one_rate = Course { per, size: drift / (most - least), forms, is_settling: false, values };
     std::iter::once(at_one_rate).chain(settling).collect()
 }
 
@@ -292,21 +310,21 @@ fn drifts_since(
     form: Option<&'static str>,
     zero: &dyn Fn(&Datum) -> usize,
 ) -> Vec<Entry> {
-    let Course { values, suffix, unit, size, .. } = course;
+    let Course { values, per, size, .. } = course;
     let shift = |channel: Axis| {
         let own = data.iter().enumerate().filter(|(_, d)| d.channel == channel);
-        Action::Shift(own.map(|(i, d)| (i, values[i] - values[zero(d)])).collect())
+        Action::Drift(channel, *per, own.map(|(i, d)| (i, values[i] - values[zero(d)])).collect())
     };
     let of_channel = |&channel: &Axis| {
-        let drift = parameter(suffix, *unit, 0.0, *size, UNBOUNDED);
+        let drift = parameter(per.suffix(), 0.0, *size, UNBOUNDED);
         entry(&THERMAL_DRIFT, Location::Channel { channel, form }, drift, shift(channel))
     };
     let mut entries: Vec<Entry> = channels.iter().map(of_channel).collect();
     if channels.len() > 1 {
         // what warms up moves the tip in some direction
         let vector = channels.iter().map(|&channel| {
-            let name = format!("d{channel}_{suffix}");
-            (parameter(&name, *unit, 0.0, *size, UNBOUNDED), shift(channel))
+            let name = format!("d{channel}_{}", per.suffix());
+            (parameter(&name, 0.0, *size, UNBOUNDED), shift(channel))
         });
         let (parameters, actions) = vector.unzip();
         let location = match form {

@@ -1,18 +1,18 @@
 //! What the rod is: moduli, joints, root, bend.
 
 use super::entry::{
-    Context, Entry, NOT_NEGATIVE, RigEffect, SCALES, along_the_load, candidate, entry, of, parameter,
-    preferring, said,
+    Context, Entry, NOT_NEGATIVE, RigEffect, SCALES, Usual, along_the_load, by_action, candidate, entry,
+    number, parameter, preferring, size,
 };
 use super::places::{sessions, stations};
-use crate::diagnosis::rig::action::Action;
-use crate::diagnosis::rig::model::{Body, RigModel, STATION};
-use crate::diagnosis::rig::structure::Structure;
+use crate::diagnosis::rig::mechanics::action::Action;
+use crate::diagnosis::rig::mechanics::structure::{Deformation, Structure, with_moduli};
+use crate::diagnosis::rig::model::{Body, RigModel};
 use crate::inference::{
-    Candidate, Effect, Finding, ForwardModel, Kind, Location, Part, Quantity, Reported, WrittenTo,
+    Candidate, Effect, Finding, ForwardModel, Kind, Location, Part, Quantity, Reported, Term, WrittenTo,
 };
-use crate::rod::BendFlexibility;
-use crate::units::{MM, URAD_PER_NM, significant};
+use crate::rod::{self, BendFlexibility, Rod};
+use crate::units::{MM, significant};
 
 /// Share by which a rod is softer than its model: 1 − 1/r is 0.27 rms over the r_rod of the paper's
 /// six rods (1.013 to 2.302).
@@ -33,7 +33,7 @@ pub static STIFFNESS_SCALE: RigEffect = RigEffect {
         summary: "the whole rod is softer or stiffer than stated",
         formula: "E → f·E, G → f·G in all pipes",
         prior: "27 %: 1 − 1/r, rms over the r_rod of the paper's six rods",
-        parameters: &[("factor", "actual over nominal stiffness")],
+        parameters: &[(&["factor"], "actual over nominal stiffness")],
         needs: "a rod file",
         cause: "moduli, walls or lengths that differ from the rod file",
         cause_at: |_| "moduli, walls or lengths that differ from the rod file".into(),
@@ -42,18 +42,23 @@ pub static STIFFNESS_SCALE: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(SOFTNESS)],
     needs_rod: true,
     candidates: |context| {
         // a share of the stiffness that there is: a rod is softer or stiffer by a factor
         let size = SOFTNESS * context.stiffness.max(1.0);
         let far = context.stiffness;
         let bounds = (SCALES.0 * far.min(1.0), SCALES.1 * far.max(1.0));
-        let factor = parameter("factor", 1.0, 1.0, size, bounds);
+        let factor = parameter("factor", 1.0, size, bounds);
         vec![entry(&STIFFNESS_SCALE, Location::Part(Part::Rod), factor, Action::Stiffness)]
     },
     missing: |_| NOT_YIELDING,
     observed: |finding, _| {
-        format!("All tubes of the rod are {} than in the model", softer(of(finding, "factor")))
+        format!("All tubes of the rod are {} than in the model", softer(number(finding, "factor")))
+    },
+    write: |term, _, rod| {
+        *rod = with_moduli(rod, term.values[0], term.values[0]);
+        WrittenTo::Model
     },
 };
 
@@ -65,7 +70,7 @@ pub static SHEAR_MODULUS: RigEffect = RigEffect {
         summary: "torsion and shear are softer or stiffer than stated",
         formula: "G → f·G in all pipes",
         prior: "27 %, as for the whole stiffness",
-        parameters: &[("factor", "actual over nominal stiffness")],
+        parameters: &[(&["factor"], "actual over nominal stiffness")],
         needs: "a rod file; loads that twist or shear the rod",
         cause: "a shear modulus that differs from the rod file",
         cause_at: |_| "a shear modulus that differs from the rod file".into(),
@@ -74,14 +79,19 @@ pub static SHEAR_MODULUS: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(SOFTNESS)],
     needs_rod: true,
     candidates: |_| {
-        let factor = parameter("factor", 1.0, 1.0, SOFTNESS, SCALES);
+        let factor = parameter("factor", 1.0, SOFTNESS, SCALES);
         vec![entry(&SHEAR_MODULUS, Location::Part(Part::Rod), factor, Action::ShearModulus)]
     },
     missing: |_| "the loads neither twist nor shear the rod",
     observed: |finding, _| {
-        format!("In torsion and shear the rod is {} than its model", softer(of(finding, "factor")))
+        format!("In torsion and shear the rod is {} than its model", softer(number(finding, "factor")))
+    },
+    write: |term, _, rod| {
+        *rod = with_moduli(rod, 1.0, term.values[0]);
+        WrittenTo::Model
     },
 };
 
@@ -94,9 +104,9 @@ pub static JOINT_COMPLIANCE: RigEffect = RigEffect {
         formula: "θ = β·M at a station, in bending and in torsion",
         prior: "20 % of the rod's own ∫ds/EI and ∫ds/GJ, as at the corner of the paper's rod 2#",
         parameters: &[
-            ("bending_urad_per_nm", "the joint's compliance in bending"),
-            ("torsion_urad_per_nm", "the joint's compliance in torsion"),
-            ("station_mm", "station of the joint"),
+            (&["bending_urad_per_nm"], "the joint's compliance in bending"),
+            (&["torsion_urad_per_nm"], "the joint's compliance in torsion"),
+            (&["station_mm"], "station of the joint"),
         ],
         needs: "a rod file",
         cause: "a compliant connection",
@@ -109,12 +119,13 @@ pub static JOINT_COMPLIANCE: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(JOINT)],
     needs_rod: true,
     candidates: joints,
     missing: |_| NOT_YIELDING,
     observed: |finding, model| {
         let place = &finding.location;
-        let what = match (stretch(finding), place) {
+        let what = match (stretch(finding, model), place) {
             (Some((low, high)), _) => {
                 let declared: String = finding
                     .rivals
@@ -132,6 +143,7 @@ pub static JOINT_COMPLIANCE: RigEffect = RigEffect {
         };
         format!("{what} gives way by {}", amount(finding, model))
     },
+    write: write_joint,
 };
 
 /// Flange or adapter.
@@ -143,8 +155,8 @@ pub static ROOT_COMPLIANCE: RigEffect = RigEffect {
         formula: "θ = β·M at the root",
         prior: "20 % of the rod's own ∫ds/EI and ∫ds/GJ",
         parameters: &[
-            ("bending_urad_per_nm", "compliance in bending"),
-            ("torsion_urad_per_nm", "compliance in torsion"),
+            (&["bending_urad_per_nm"], "compliance in bending"),
+            (&["torsion_urad_per_nm"], "compliance in torsion"),
         ],
         needs: "a rod file",
         cause: "a compliant flange or adapter",
@@ -154,6 +166,7 @@ pub static ROOT_COMPLIANCE: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Share(JOINT)],
     needs_rod: true,
     candidates: roots,
     missing: |_| NOT_YIELDING,
@@ -163,6 +176,7 @@ pub static ROOT_COMPLIANCE: RigEffect = RigEffect {
         }
         _ => format!("The rod's root gives way by {}", amount(finding, model)),
     },
+    write: write_joint,
 };
 
 /// The pipe of the bend becomes oval.
@@ -173,7 +187,7 @@ pub static BEND_FLEXIBILITY: RigEffect = RigEffect {
         summary: "the bend's cross-section becomes oval under load",
         formula: "bending of the arc × k",
         prior: "von Kármán's factor for the section, less the file's; 0.3 at least",
-        parameters: &[("factor", "k: the arc's flexibility over that of a beam")],
+        parameters: &[(&["factor"], "k: the arc's flexibility over that of a beam")],
         needs: "a rod file with a bend radius",
         cause: "its cross-section becomes oval",
         cause_at: |_| "a bend whose cross-section becomes oval".into(),
@@ -182,6 +196,7 @@ pub static BEND_FLEXIBILITY: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
+    usual: &[Usual::Number(BEND)],
     needs_rod: true,
     candidates: |context| {
         let Body::Rod(structure) = &*context.body else { return Vec::new() };
@@ -193,7 +208,7 @@ pub static BEND_FLEXIBILITY: RigEffect = RigEffect {
         let size = (karman - of_file).abs().max(BEND);
         // a bend may ovalise, but not grow stiffer than a beam
         let bounds = (of_file.min(1.0), 100.0);
-        let factor = parameter("factor", 1.0, of_file, size, bounds);
+        let factor = parameter("factor", of_file, size, bounds);
         let action = Action::Bend(of_file);
         vec![entry(&BEND_FLEXIBILITY, Location::Part(Part::Bend), factor, action)]
     },
@@ -201,7 +216,11 @@ pub static BEND_FLEXIBILITY: RigEffect = RigEffect {
         true => NOT_YIELDING,
         false => "the rod's corner is sharp: no arc could become oval",
     },
-    observed: |finding, _| format!("The bend is {} times as flexible as a beam", said(finding, "factor", "")),
+    observed: |finding, _| format!("The bend is {} times as flexible as a beam", size(finding, "factor", "")),
+    write: |term, _, rod| {
+        rod.bend_flexibility = BendFlexibility::Factor(term.values[0]);
+        WrittenTo::Model
+    },
 };
 
 /// The root, and that of each session, in which the rod was mounted anew.
@@ -272,8 +291,7 @@ fn joint(
 ) -> Entry {
     let rotation = structure.rotation();
     let [bending, torsion] = structure.add_joint(station);
-    let compliance =
-        |name, k: usize| parameter(name, URAD_PER_NM, of_file[k], JOINT * rotation[k], NOT_NEGATIVE);
+    let compliance = |name, k: usize| parameter(name, of_file[k], JOINT * rotation[k], NOT_NEGATIVE);
     let mut parameters = vec![compliance("bending_urad_per_nm", 0), compliance("torsion_urad_per_nm", 1)];
     let mut actions = vec![Action::Joint(bending, of_file[0]), Action::Joint(torsion, of_file[1])];
     if let Some(range) = range
@@ -282,39 +300,68 @@ fn joint(
         let [before, _, behind] = nodes.stations;
         // as likely anywhere
         let size = (behind - before) / 12.0f64.sqrt();
-        parameters.push(parameter(STATION, MM, station, size, (before, behind)));
+        parameters.push(parameter("station_mm", station, size, (before, behind)));
         actions.push(Action::Station(nodes));
     }
     (candidate(&effect.effect, location, parameters), actions)
 }
 
+/// Writes a connection as the joint of its name, or as one that the rod's file did not have.
+fn write_joint(term: &Term, model: &RigModel, rod: &mut Rod) -> WrittenTo {
+    let Body::Rod(structure) = &model.body else { return WrittenTo::Nowhere };
+    let place = &model.candidates[term.candidate].location;
+    // a rod file has no sessions
+    if matches!(place, Location::InSession { .. }) {
+        return WrittenTo::Recording;
+    }
+    let declared = rod.joints.iter().position(|joint| *place == Location::Named(joint.name.clone()));
+    let index = declared.unwrap_or_else(|| {
+        let place = model.location(term);
+        let station = if let Location::Station(station) = place { station } else { 0.0 };
+        rod.joints.push(rod::Joint { name: place.to_string(), station, bending: 0.0, torsion: 0.0 });
+        rod.joints.len() - 1
+    });
+    // what these loads cannot show of a declared joint stays as it is
+    for (action, &value) in model.actions[term.candidate].iter().zip(&term.values) {
+        if let Action::Joint(number, _) = action {
+            match structure.deformation(*number) {
+                Deformation::Bending => rod.joints[index].bending = value,
+                Deformation::Torsion => rod.joints[index].torsion = value,
+            }
+        }
+    }
+    WrittenTo::Model
+}
+
 /// Where along the rod a joint that nobody declared may be, m; `None` for everything else.
-pub(in crate::diagnosis::rig) fn stretch(finding: &Finding) -> Option<(f64, f64)> {
-    let station = finding.estimates.iter().find(|estimate| estimate.name == STATION)?;
+fn stretch(finding: &Finding, model: &RigModel) -> Option<(f64, f64)> {
+    let actions = &model.actions[finding.parts.first()?.term.candidate];
+    let mut numbers = actions.iter().zip(&finding.estimates);
+    let (_, station) = numbers.find(|(action, _)| matches!(action, Action::Station(_)))?;
     Some((station.low, station.high))
 }
 
-/// How much a joint yields; only what differs from the rod file, unless nothing does for sure.
+/// By how much a joint gives way; only what differs from the rod file, unless nothing does for
+/// sure.
 fn amount(finding: &Finding, model: &RigModel) -> String {
-    let Some(part) = finding.parts.first() else { return String::new() };
-    let parameters = &model.candidates()[part.term.candidate].parameters;
-    let mut sure = Vec::new();
-    let mut all = Vec::new();
-    for (name, word) in [("bending_urad_per_nm", "in bending"), ("torsion_urad_per_nm", "in torsion")] {
-        let Some(parameter) = parameters.iter().find(|parameter| parameter.name == name) else {
-            continue;
+    let Body::Rod(structure) = &model.body else { return String::new() };
+    let (mut sure, mut all) = (Vec::new(), Vec::new());
+    for (action, parameter, compliance) in by_action(finding, model) {
+        let (Action::Joint(number, _) | Action::JointIn(_, number)) = action else { continue };
+        let how = match structure.deformation(*number) {
+            Deformation::Bending => "in bending",
+            Deformation::Torsion => "in torsion",
         };
-        let Some(yields) = finding.quantity(name) else { continue };
-        let of_file = parameter.neutral / parameter.unit;
+        let of_file = parameter.neutral / parameter.unit.si;
         let instead = match of_file > 0.0 {
             true => format!(" instead of {}", significant(of_file, 3)),
             false => String::new(),
         };
-        let words = format!("{} {word}{instead}", yields.say("µrad/(N·m)"));
-        if yields.low > of_file || yields.high < of_file {
-            sure.push(words.clone());
+        let one = format!("{} {how}{instead}", compliance.say("µrad/(N·m)"));
+        if compliance.low > of_file || compliance.high < of_file {
+            sure.push(one.clone());
         }
-        all.push(words);
+        all.push(one);
     }
     if sure.is_empty() { all } else { sure }.join(" and ")
 }

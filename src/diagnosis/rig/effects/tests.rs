@@ -1,8 +1,10 @@
-//! Every effect has its words, and the registry is all there is.
+//! Every effect is described, and the registry is all there is.
 
 use crate::diagnosis::rig::RigModel;
 use crate::diagnosis::rig::effects::registry;
-use crate::inference::{Estimate, Finding, FindingPart, ForwardModel, Kind, Location, Reported};
+use crate::inference::{
+    Estimate, Finding, FindingPart, ForwardModel, Kind, Location, Reported, Term, WrittenTo,
+};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
 use crate::units::UM;
@@ -60,20 +62,21 @@ fn finding(model: &RigModel, index: usize) -> Finding {
 }
 
 #[test]
-fn every_effect_of_the_registry_is_met_and_has_words_with_its_number() {
+fn every_effect_of_the_registry_is_met_and_described_with_its_number() {
     let model = everything();
     let mut met = Vec::new();
     for (index, candidate) in model.candidates().iter().enumerate().filter(|(_, c)| !c.is_nonparametric) {
         let effect = candidate.effect;
-        let words = model.describe(&finding(&model, index)).to_string();
-        assert!(words.contains('±') || words.contains(" to "), "{effect}: {words}");
-        assert!(!words.contains("NaN"), "{effect}: {words}");
+        let description = model.describe(&finding(&model, index)).to_string();
+        assert!(description.contains('±') || description.contains(" to "), "{effect}: {description}");
+        assert!(!description.contains("NaN"), "{effect}: {description}");
         // a mistake names the column of the file
         let names_keys = effect.kind == Kind::Mistake;
-        assert!(names_keys || !words.contains('_'), "{effect}: {words}");
+        assert!(names_keys || !description.contains('_'), "{effect}: {description}");
         assert!(names_keys || !(effect.cause_at)(&candidate.location).contains('_'));
         for parameter in &candidate.parameters {
-            let is_listed = effect.parameters.iter().any(|(name, _)| *name == parameter.name);
+            let is_listed =
+                effect.parameters.iter().any(|(names, _)| names.contains(&parameter.name.as_str()));
             assert!(is_listed, "{effect} has {} beyond its record", parameter.name);
         }
         if !met.contains(&effect) {
@@ -101,10 +104,42 @@ fn every_record_is_complete() {
     }
 }
 
+/// The prior in description has the number that candidates are made with.
 #[test]
-fn the_words_say_what_a_mechanic_would() {
+fn a_prior_says_its_number() {
+    for known in registry::ALL {
+        assert!(!known.usual.is_empty(), "{}", known.effect);
+        for usual in known.usual.iter().map(ToString::to_string) {
+            let prior = known.effect.prior;
+            let ends_a_number = |at: usize| prior[..at].ends_with(|c: char| c.is_ascii_digit() || c == '.');
+            let is_said = prior.match_indices(&usual).any(|(at, _)| !ends_a_number(at));
+            assert!(is_said, "{}: {usual} in \"{prior}\"", known.effect);
+        }
+    }
+}
+
+/// Each term goes where its record says; what is the rod's own changes the rod.
+#[test]
+fn what_is_written_back_goes_where_the_record_says() {
     let model = everything();
-    let say = |effect: &str, location: &str| {
+    let rod = model.rod().unwrap();
+    let named = model.candidates().iter().enumerate().filter(|(_, candidate)| !candidate.is_nonparametric);
+    for (index, candidate) in named {
+        let values = candidate.parameters.iter().map(|p| (p.neutral + p.size).min(p.bounds.1)).collect();
+        let mut written = rod.clone();
+        let destination = registry::write(&Term { candidate: index, values }, &model, &mut written);
+        // a rod file has no sessions
+        let is_of_session = matches!(candidate.location, Location::InSession { .. });
+        let expected = if is_of_session { WrittenTo::Recording } else { candidate.effect.written_to };
+        assert_eq!(destination, expected, "{} {}", candidate.effect, candidate.location);
+        assert_eq!(written != *rod, destination == WrittenTo::Model, "{}", candidate.effect);
+    }
+}
+
+#[test]
+fn the_descriptions_say_what_a_mechanic_would() {
+    let model = everything();
+    let description_of = |effect: &str, location: &str| {
         let is_it =
             |c: &crate::inference::Candidate| c.effect.name == effect && c.location.to_string() == location;
         let index = model.candidates().iter().position(is_it);
@@ -112,33 +147,36 @@ fn the_words_say_what_a_mechanic_would() {
         model.describe(&finding(&model, index)).to_string()
     };
     assert_eq!(
-        say("friction", "slide, loads along y"),
+        description_of("friction", "slide, loads along y"),
         "About 2.0 ± 1.0 N of each load along y does not reach the rod while loading, and as much remains on it \
          while unloading: friction in the slide"
     );
-    assert!(say("joint_compliance", "sleeve").starts_with("The joint \"sleeve\" gives way by"));
-    let drift = say("thermal_drift", "dy");
-    let said: f64 = drift.split(' ').nth(4).and_then(|number| number.parse().ok()).unwrap();
+    assert!(description_of("joint_compliance", "sleeve").starts_with("The joint \"sleeve\" gives way by"));
+    let drift = description_of("thermal_drift", "dy");
+    let stated: f64 = drift.split(' ').nth(4).and_then(|number| number.parse().ok()).unwrap();
     let is_drift = |c: &&crate::inference::Candidate| c.effect.name == "thermal_drift";
     let size = model.candidates().iter().find(is_drift).unwrap().parameters[0].size / UM;
     assert!(drift.starts_with("Sensor dy drifts by") && drift.contains("µm per kelvin"), "{drift}");
     // the finding is made twice its size
-    assert!((said - 2.0 * size).abs() < 0.1 * size, "{drift}: {size}");
-    assert!(say("nonlinear_stiffness", "rod").contains("is 10 ± 5 % softer at 20.0 N than at small loads"));
+    assert!((stated - 2.0 * size).abs() < 0.1 * size, "{drift}: {size}");
+    assert!(
+        description_of("nonlinear_stiffness", "rod")
+            .contains("is 10 ± 5 % softer at 20.0 N than at small loads")
+    );
 }
 
 #[test]
 fn what_remains_is_said_by_what_it_follows() {
     let model = everything();
-    let said = |wanted: &str| {
+    let followed = |wanted: &str| {
         model.candidates().iter().find_map(|candidate| match &candidate.location {
             Location::Curve { label, follows, .. } if label == wanted => Some(follows.clone()),
             _ => None,
         })
     };
-    let of_line = said("load, dy under loads along y");
+    let of_line = followed("load, dy under loads along y");
     assert_eq!(of_line.as_deref(), Some("follows the load (dy under loads along y)"));
-    assert_eq!(said("time, all deflections").as_deref(), Some("follows the time (all readings alike)"));
-    let slopes = said("slope of each line");
+    assert_eq!(followed("time, all deflections").as_deref(), Some("follows the time (all readings alike)"));
+    let slopes = followed("slope of each line");
     assert_eq!(slopes.as_deref(), Some("makes some lines steeper or flatter than others"));
 }

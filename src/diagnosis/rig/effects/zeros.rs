@@ -4,12 +4,12 @@
 //! What is larger than the rod's own deflection is undone before there is a model:
 //! `diagnosis/rig/mistakes`.
 
-use super::entry::{Context, Entry, RigEffect, UNBOUNDED, entry, of, parameter};
+use super::entry::{Context, Entry, RigEffect, UNBOUNDED, entry, number, out_of_the_readings, parameter};
 use super::mistakes::OFFSET_MISTAKE;
 use super::places::{measured_channels, runs_by_sensor};
-use crate::diagnosis::rig::action::{Action, Weights};
-use crate::inference::Location;
-use crate::units::UM;
+use crate::diagnosis::rig::mechanics::action::{Action, Weights};
+use crate::diagnosis::rig::recording::columns::{column, sensor_in_run};
+use crate::inference::{Key, Location};
 
 /// Usual size as a share of the largest reading.
 const ZERO: f64 = 0.1;
@@ -21,26 +21,28 @@ const FEWEST_RUNS: usize = 3;
 /// A constant on all readings of a channel, or of a channel in a run.
 pub static ZERO_NOT_TAKEN: RigEffect = RigEffect {
     effect: OFFSET_MISTAKE,
+    usual: &[],
     needs_rod: true,
     candidates: offsets,
     missing: |_| "nothing was read",
     observed: |finding, _| {
-        let zero = of(finding, "um").say("µm");
+        let zero = number(finding, "um").say("µm");
         format!("A zero was not taken ({}): subtract {zero} from these readings", finding.location)
     },
+    write: out_of_the_readings,
 };
 
 fn offsets(context: &mut Context) -> Vec<Entry> {
     let size = ZERO * context.largest_reading();
     let data = context.data;
-    let zero = |place: String, of: Vec<usize>| {
-        let readings: Weights = of.into_iter().map(|i| (i, 1.0)).collect();
-        let um = parameter("um", UM, 0.0, size, UNBOUNDED);
-        entry(&ZERO_NOT_TAKEN, Location::key(place), um, Action::Shift(readings))
+    let zero = |place: Key, own: Vec<usize>| {
+        let readings: Weights = own.into_iter().map(|i| (i, 1.0)).collect();
+        let um = parameter("um", 0.0, size, UNBOUNDED);
+        entry(&ZERO_NOT_TAKEN, Location::from(place), um, Action::Shift(readings))
     };
     let of_channel = |channel| {
-        let of = (0..data.len()).filter(|&i| data[i].channel == channel).collect();
-        zero(format!("d{channel}_um"), of)
+        let own = (0..data.len()).filter(|&i| data[i].channel == channel).collect();
+        zero(Key::new(column(channel)), own)
     };
     let mut entries: Vec<Entry> = measured_channels(data).into_iter().map(of_channel).collect();
     let runs = runs_by_sensor(data);
@@ -54,14 +56,8 @@ fn offsets(context: &mut Context) -> Vec<Entry> {
         if alike < FEWEST_RUNS || rows.len() < 2 {
             continue;
         }
-        let name = match &data[rows[0]].trial {
-            Some(trial) => format!("d{channel}_um, axis {}, trial {trial}", run.axis),
-            None => {
-                let (first, last) = (data[rows[0]].row, data[rows[rows.len() - 1]].row);
-                format!("d{channel}_um, axis {}, rows {first} to {last}", run.axis)
-            }
-        };
-        entries.push(zero(name, rows.clone()));
+        let place = sensor_in_run(&data[rows[0]], &data[rows[rows.len() - 1]]);
+        entries.push(zero(place, rows.clone()));
     }
     entries
 }

@@ -7,13 +7,15 @@
 
 use std::collections::BTreeMap;
 
-use super::super::datum::Datum;
 use super::super::effects::mistakes::COPY_MISTAKE;
-use super::super::evidence::resolution;
 use super::super::numbering::numbered;
 use super::lines::fit;
-use super::part::{Part, rows_name, trial_name};
+use super::part::Part;
 use super::search::ODDS;
+use crate::diagnosis::rig::recording::columns::{rows_of, trial_name};
+use crate::diagnosis::rig::recording::datum::Datum;
+use crate::diagnosis::rig::recording::evidence::resolution;
+use crate::inference::Key;
 use crate::statistics::median;
 
 /// Scatter that hardly any display rounds away, in steps.
@@ -24,14 +26,14 @@ const COMPARED: usize = 20;
 
 /// What a trial shows: direction, stations, load, phase and channel of each reading, in turn, with
 /// the reading, m.
-type Key = (i8, usize, [u64; 2], u64, bool, usize);
+type Shown = (i8, usize, [u64; 2], u64, bool, usize);
 
 /// Trials whose readings are those of an earlier one; `data` of the copies.
 pub(super) fn found(data: &[Datum]) -> Vec<Part> {
     let trial = numbered(data.iter().map(|datum| (datum.session_number, datum.trial_number)));
     let mut readings: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     trial.iter().enumerate().for_each(|(i, &trial)| readings.entry(trial).or_default().push(i));
-    let key = |&i: &usize| -> Key {
+    let key = |&i: &usize| -> Shown {
         let d = &data[i];
         let axis = d.direction.axis.index();
         (d.direction.sign, axis, d.stations(), d.load.to_bits(), d.is_unloading(), d.channel.index())
@@ -65,7 +67,7 @@ pub(super) fn found(data: &[Datum]) -> Vec<Part> {
                 own.len()
             ),
             looks_like: format!("{name} looks like a copy of {original}"),
-            location: name,
+            location: Key::new(name),
             estimates: Vec::new(),
             explains: 0.0,
             data: (*own).clone(),
@@ -90,6 +92,6 @@ fn scatters(data: &[Datum], first: &[usize], second: &[usize]) -> Vec<f64> {
 fn name(data: &[Datum], own: &[usize]) -> String {
     match trial_name(&data[own[0]]) {
         Some(trial) => format!("trial {trial}"),
-        None => rows_name(own.iter().map(|&i| &data[i])),
+        None => rows_of(own.iter().map(|&i| &data[i])),
     }
 }

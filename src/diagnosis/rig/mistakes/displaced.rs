@@ -19,11 +19,12 @@ use std::collections::BTreeMap;
 
 use super::super::effects::mistakes::ROW_MISTAKE;
 use super::super::numbering::numbered;
-use super::change::exact;
 use super::lines::{Fit, fit};
-use super::moves::{column, load_column};
 use super::part::Part;
+use super::possible::exact;
 use super::search::ODDS;
+use crate::diagnosis::rig::recording::columns::{columns, load_column, rows_between};
+use crate::inference::Key;
 use crate::rig::readings::{LoadColumn, Phase, Reading};
 use crate::spatial::Axis;
 use crate::statistics::median;
@@ -97,7 +98,7 @@ pub(super) fn found(rows: &[Reading], load: LoadColumn) -> Option<Displaced> {
     let place = |one: &Tried| sheet.place(one, load);
     let near = tried.iter().filter(|one| one.kind != best.kind && one.left < NO_WORSE * best.left);
     let channels = sheet.channels();
-    let (from, to) = (best.stretch.0 + 1, best.stretch.1 + 1);
+    let rows = rows_between(best.stretch.0 + 1, best.stretch.1 + 1);
     let (what, it) = match best.kind {
         Kind::Readings(_) => ("the readings", channels.as_str()),
         Kind::Loads(_) | Kind::WayDown => ("the loads", load_column(load)),
@@ -118,9 +119,7 @@ pub(super) fn found(rows: &[Reading], load: LoadColumn) -> Option<Displaced> {
                 by => format!("{by} rows"),
             };
             (
-                format!(
-                    "In the rows {from} to {to}, {what} stand {count} too {stand}: move {it} {go} by {count}"
-                ),
+                format!("In the {rows}, {what} stand {count} too {stand}: move {it} {go} by {count}"),
                 -by as f64,
             )
         }
@@ -187,7 +186,7 @@ impl<'a> Sheet<'a> {
             deflection[label] = deflection[label].max(largest);
         }
         let most = deflection.iter().copied().fold(0.0, f64::max);
-        deflection.iter_mut().for_each(|of| *of = of.max(most / 3.0));
+        deflection.iter_mut().for_each(|own| *own = own.max(most / 3.0));
         Sheet { rows, label, way, deflection, turned }
     }
 
@@ -362,16 +361,16 @@ impl<'a> Sheet<'a> {
 
     fn channels(&self) -> String {
         let is_read = |channel: &Axis| self.rows.iter().any(|row| row.offset[channel.index()].is_some());
-        Axis::ALL.into_iter().filter(is_read).map(column).collect::<Vec<_>>().join(", ")
+        columns(&Axis::ALL.into_iter().filter(is_read).collect::<Vec<_>>())
     }
 
     /// `dy_um, dz_um, rows 21 to 56`.
-    fn place(&self, tried: &Tried, load: LoadColumn) -> String {
-        let rows = format!("rows {} to {}", tried.stretch.0 + 1, tried.stretch.1 + 1);
+    fn place(&self, tried: &Tried, load: LoadColumn) -> Key {
+        let rows = rows_between(tried.stretch.0 + 1, tried.stretch.1 + 1);
         match tried.kind {
-            Kind::Readings(_) => format!("{}, {rows}", self.channels()),
-            Kind::Loads(_) => format!("{}, {rows}", load_column(load)),
-            Kind::WayDown => format!("{}, way down", load_column(load)),
+            Kind::Readings(_) => Key::new(self.channels()).rows(rows),
+            Kind::Loads(_) => Key::new(load_column(load)).rows(rows),
+            Kind::WayDown => Key::new(load_column(load)).rows("way down"),
         }
     }
 }

@@ -15,14 +15,15 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use super::super::datum::Datum;
 use super::super::effects::mistakes::TYPING_MISTAKE;
-use super::change::exact;
 use super::lines::{Line, fit};
-use super::moves::{column, load_column};
 use super::part::Part;
-use crate::inference::Estimate;
+use super::possible::exact;
+use crate::diagnosis::rig::recording::columns::{columns, load_column};
+use crate::diagnosis::rig::recording::datum::Datum;
+use crate::inference::{Estimate, Key};
 use crate::rig::readings::LoadColumn;
+use crate::spatial::Axis;
 use crate::statistics::median;
 use crate::units::{STANDARD_GRAVITY, significant};
 
@@ -51,8 +52,8 @@ pub(super) struct Entry {
     pub load: Option<f64>,
 }
 
-/// What the channels of a row say of its load.
-struct Said {
+/// The load of a row by its readings.
+struct LoadByReadings {
     /// N, with its standard error.
     load: f64,
     error: f64,
@@ -78,20 +79,20 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
     };
     let mut found = Vec::new();
     for own in instants.values() {
-        let Some(said) = said(data, lines, &line_of, own) else { continue };
+        let Some(shown) = load_by_readings(data, lines, &line_of, own) else { continue };
         let datum = &data[own[0]];
         let row = datum.row;
-        let apart = (said.load - datum.signed_load()).abs();
-        let is_wrong = apart > FAR * usual && apart > SCATTERS * said.error;
-        if !is_wrong || said.off > AGREE || said.against[0] < SCATTERS {
+        let apart = (shown.load - datum.signed_load()).abs();
+        let is_wrong = apart > FAR * usual && apart > SCATTERS * shown.error;
+        if !is_wrong || shown.off > AGREE || shown.against[0] < SCATTERS {
             continue;
         }
-        let along = f64::from(datum.direction.sign) * said.load;
+        let along = f64::from(datum.direction.sign) * shown.load;
         // no load is below none, and nobody hangs more than a rig bears
         if along < 0.0 || along > MOST * usual {
             continue;
         }
-        let tolerance = (NEAR * along.abs()).max(2.0 * said.error);
+        let tolerance = (NEAR * along.abs()).max(2.0 * shown.error);
         let meant = meant(datum.load / in_file, &levels, in_file);
         let meant =
             meant.into_iter().map(|load| load * in_file).filter(|load| (load - along).abs() < tolerance);
@@ -102,7 +103,7 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
             let is_same = |d: &&Datum| d.order != datum.order && (d.load - load).abs() < 1e-6 * usual;
             data.iter().any(|d| is_same(&d))
         };
-        let is_alone = said.against[1] < AGREE;
+        let is_alone = shown.against[1] < AGREE;
         if is_alone && (is_elsewhere(datum.load) || !meant.is_some_and(is_elsewhere)) {
             continue;
         }
@@ -114,11 +115,11 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
             None => format!(
                 "{} ± {}",
                 significant(along / in_file, 3),
-                significant(2.0 * said.error / in_file, 1)
+                significant(2.0 * shown.error / in_file, 1)
             ),
         };
-        let location = format!("{name}, row {row}");
-        let readings: Vec<String> = own.iter().map(|&i| column(data[i].channel)).collect();
+        let location = Key::new(name).rows(format!("row {row}"));
+        let readings: Vec<Axis> = own.iter().map(|&i| data[i].channel).collect();
         let line = datum.line;
         let verb = if readings.len() == 1 { "is" } else { "are" };
         found.push(Entry {
@@ -126,19 +127,16 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
                 effect: &TYPING_MISTAKE,
                 observed: format!(
                     "The load in row {row} (line {line}) is {written} {unit_name}, but {} {verb} of {is} {unit_name}: write that instead, or leave the row out",
-                    readings.join(", ")
+                    columns(&readings)
                 ),
                 looks_like: format!("{location} looks mistyped"),
                 location,
                 estimates: vec![match meant {
-                    Some(meant) => Estimate { name: "n".into(), ..exact("n", meant) },
-                    None => Estimate {
-                        name: "n".into(),
-                        unit: 1.0,
-                        value: along,
-                        low: along - 2.0 * said.error,
-                        high: along + 2.0 * said.error,
-                    },
+                    Some(meant) => exact("n", meant),
+                    None => {
+                        let half = 2.0 * shown.error;
+                        Estimate::as_written("n", along, along - half, along + half)
+                    }
                 }],
                 explains: apart * most_slope(lines, &line_of, own),
                 data: own.clone(),
@@ -165,7 +163,12 @@ fn most_slope(lines: &[Line], line_of: &[Option<usize>], own: &[usize]) -> f64 {
     own.iter().filter_map(|&i| Some(lines[line_of[i]?].fit.slope.abs())).fold(0.0, f64::max)
 }
 
-fn said(data: &[Datum], lines: &[Line], line_of: &[Option<usize>], own: &[usize]) -> Option<Said> {
+fn load_by_readings(
+    data: &[Datum],
+    lines: &[Line],
+    line_of: &[Option<usize>],
+    own: &[usize],
+) -> Option<LoadByReadings> {
     let line = |&i: &usize| Some((&data[i], without(data, &lines[line_of[i]?], i)));
     let known: Vec<(&Datum, Cow<'_, Line>)> =
         own.iter().filter_map(line).filter(|(_, line)| line.has_slope).collect();
@@ -186,10 +189,10 @@ fn said(data: &[Datum], lines: &[Line], line_of: &[Option<usize>], own: &[usize]
         ((without_play(datum, line) - line.fit.slope * load) / sigma).abs()
     };
     let in_file = known.first().map(|(datum, _)| datum.signed_load())?;
-    let shown = known.iter().filter(|(_, line)| is_shown(line));
-    let mut against: Vec<f64> = shown.map(|one| off(in_file, one)).chain([0.0; 2]).collect();
+    let showing = known.iter().filter(|(_, line)| is_shown(line));
+    let mut against: Vec<f64> = showing.map(|one| off(in_file, one)).chain([0.0; 2]).collect();
     against.sort_by(|a, b| b.total_cmp(a));
-    load.is_finite().then(|| Said {
+    load.is_finite().then(|| LoadByReadings {
         load,
         error: bottom.powf(-0.5),
         against: [against[0], against[1]],

@@ -2,16 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use super::super::datum::Datum;
 use super::super::effects::events::SLIP;
 use super::super::effects::mistakes::{OFFSET_MISTAKE, SIGN_MISTAKE};
 use super::lines::{Fit, Line, fit};
-use super::moves::column;
 use super::part::Part;
-use crate::inference::{Estimate, Quantity};
-use crate::spatial::Axis;
+use crate::diagnosis::rig::recording::columns::{axis_rows, column, columns, rows_of, sensor_in_run};
+use crate::diagnosis::rig::recording::datum::Datum;
+use crate::inference::{Estimate, Key, Quantity};
+use crate::spatial::{Axis, Direction};
 use crate::statistics::median;
-use crate::units::UM;
 
 /// A flipped group has the slope of the others, within this share.
 const ALIKE: f64 = 0.3;
@@ -36,11 +35,11 @@ pub(super) struct Group {
     pub has_slope: bool,
 }
 
-pub(super) fn group(data: &[Datum], of: Vec<usize>) -> Group {
-    let points: Vec<(f64, f64)> = of.iter().map(|&i| (data[i].signed_load(), data[i].measured)).collect();
+pub(super) fn group(data: &[Datum], own: Vec<usize>) -> Group {
+    let points: Vec<(f64, f64)> = own.iter().map(|&i| (data[i].signed_load(), data[i].measured)).collect();
     let largest = points.iter().fold(0.0, |most: f64, (x, _)| most.max(x.abs()));
-    let has_slope = of.len() >= 3 && points.iter().any(|(x, _)| (x - points[0].0).abs() > 0.2 * largest);
-    Group { fit: fit(&points), data: of, has_slope }
+    let has_slope = own.len() >= 3 && points.iter().any(|(x, _)| (x - points[0].0).abs() > 0.2 * largest);
+    Group { fit: fit(&points), data: own, has_slope }
 }
 
 fn split(data: &[Datum], line: &Line, key: impl Fn(&Datum) -> i64) -> Vec<(i64, Group)> {
@@ -68,52 +67,61 @@ fn is_flipped(data: &[Datum], group: &Group, slope: f64, scatter: f64) -> bool {
 /// Runs, or directions, of a channel whose sign is the other way than that of the rest; `expected`
 /// is the slope of each line by the rod, in the scale of the readings, where there is one.
 pub(super) fn flipped(data: &[Datum], lines: &[Line], expected: Option<&[f64]>) -> Vec<Part> {
-    let mut found: Vec<Part> = Vec::new();
+    let mut found: Vec<Flipped> = Vec::new();
     for (k, line) in lines.iter().enumerate() {
-        let hint = expected.map(|of| of[k]);
-        let Some((flipped, place)) =
-            flipped_runs(data, line, hint).or_else(|| flipped_direction(data, line, hint))
-        else {
-            continue;
-        };
-        let name = column(line.channel);
-        let explains = line.fit.slope.abs().max(hint.unwrap_or(0.0).abs()) * line.largest_load;
-        match found.iter_mut().find(|part| part.rivals[0].1 == place) {
+        let hint = expected.map(|slopes| slopes[k]);
+        let flipped = flipped_runs(data, line, hint).or_else(|| flipped_direction(data, line, hint));
+        let Some((own, rows)) = flipped else { continue };
+        match found.iter_mut().find(|flipped| flipped.rows == rows) {
             // the other channels of the same rows: their direction is the likelier cause
-            Some(part) => {
-                part.data.extend(flipped);
-                part.location =
-                    format!("{}, {place}", part.location.split(", axis").next().unwrap_or_default());
-                part.location =
-                    part.location.replacen(&format!(", {place}"), &format!(", {name}, {place}"), 1);
-                part.observed = words(&part.location);
+            Some(flipped) => {
+                flipped.channels.push(line.channel);
+                flipped.data.extend(own);
             }
             None => {
-                let location = format!("{name}, {place}");
-                found.push(Part {
-                    effect: &SIGN_MISTAKE,
-                    observed: words(&location),
-                    looks_like: format!("{location}: the sign looks wrong"),
-                    location,
-                    estimates: Vec::new(),
-                    explains,
-                    data: flipped,
-                    rivals: vec![(&SIGN_MISTAKE, place)],
-                });
+                let slope = line.fit.slope.abs().max(hint.unwrap_or(0.0).abs());
+                let explains = slope * line.largest_load;
+                found.push(Flipped { channels: vec![line.channel], rows, data: own, explains });
             }
         }
     }
-    found
+    found.into_iter().map(Flipped::part).collect()
 }
 
-fn words(location: &str) -> String {
-    format!(
-        "The sign is wrong in some rows ({location}): multiply these readings by −1 (or turn their direction in the column axis round)"
-    )
+/// Readings whose sign is the other way.
+struct Flipped {
+    channels: Vec<Axis>,
+    /// Their loads' direction, and which runs: `axis y, trial 2`.
+    rows: Key,
+    data: Vec<usize>,
+    explains: f64,
+}
+
+impl Flipped {
+    fn part(self) -> Part {
+        let Flipped { channels, rows, data, explains } = self;
+        let of_rows = |channels: &[Axis]| {
+            let key = Key::new(columns(channels)).rows(&rows.names);
+            rows.rows.iter().fold(key, |key, runs| key.rows(runs))
+        };
+        let location = of_rows(&channels);
+        Part {
+            effect: &SIGN_MISTAKE,
+            observed: format!(
+                "The sign is wrong in some rows ({location}): multiply these readings by −1 (or turn their direction in the column axis round)"
+            ),
+            looks_like: format!("{}: the sign looks wrong", of_rows(&channels[..1])),
+            location,
+            estimates: Vec::new(),
+            explains,
+            data,
+            rivals: vec![(&SIGN_MISTAKE, rows)],
+        }
+    }
 }
 
 /// Fewer runs than the others.
-fn flipped_runs(data: &[Datum], line: &Line, hint: Option<f64>) -> Option<(Vec<usize>, String)> {
+fn flipped_runs(data: &[Datum], line: &Line, hint: Option<f64>) -> Option<(Vec<usize>, Key)> {
     let groups = split(data, line, |d| d.run as i64);
     let usable: Vec<&(i64, Group)> = groups.iter().filter(|(_, group)| group.has_slope).collect();
     let against = usable.iter().filter(|(_, group)| group.fit.slope < 0.0).count();
@@ -140,17 +148,15 @@ fn flipped_runs(data: &[Datum], line: &Line, hint: Option<f64>) -> Option<(Vec<u
     let flipped: Vec<usize> = wrong.iter().flat_map(|(_, group)| group.data.clone()).collect();
     let mut trials: Vec<&str> = flipped.iter().filter_map(|&i| data[i].trial.as_deref()).collect();
     trials.dedup();
-    let rows = flipped.iter().map(|&i| data[i].row);
-    let rows = (rows.clone().min()?, rows.max()?);
-    let place = match trials.is_empty() {
-        false => format!("axis {}, trial {}", line.axis, trials.join(" and ")),
-        true => format!("axis {}, rows {} to {}", line.axis, rows.0, rows.1),
+    let runs = match trials.is_empty() {
+        false => format!("trial {}", trials.join(" and ")),
+        true => rows_of(flipped.iter().map(|&i| &data[i])),
     };
-    Some((flipped, place))
+    Some((flipped, Key::new(axis_rows(line.axis)).rows(runs)))
 }
 
 /// The loads of one direction, where those of the other are right.
-fn flipped_direction(data: &[Datum], line: &Line, hint: Option<f64>) -> Option<(Vec<usize>, String)> {
+fn flipped_direction(data: &[Datum], line: &Line, hint: Option<f64>) -> Option<(Vec<usize>, Key)> {
     let groups = split(data, line, |d| i64::from(d.direction.sign));
     let [(_, minus), (_, plus)] = &groups[..] else { return None };
     // the other way round by the rod; without one the smaller group, else the negative one
@@ -158,14 +164,14 @@ fn flipped_direction(data: &[Datum], line: &Line, hint: Option<f64>) -> Option<(
         Some(hint) => plus.fit.slope * hint < 0.0,
         None => minus.data.len() > plus.data.len(),
     };
-    let (wrong, right, name) = match is_plus_wrong {
-        true => (plus, minus, format!("{}", line.axis)),
-        false => (minus, plus, format!("-{}", line.axis)),
+    let (wrong, right, direction) = match is_plus_wrong {
+        true => (plus, minus, Direction::along(line.axis)),
+        false => (minus, plus, Direction::against(line.axis)),
     };
     let is_it = right.has_slope
         && hint.is_none_or(|hint| right.fit.slope * hint > 0.0)
         && is_flipped(data, wrong, right.fit.slope, right.fit.scatter);
-    is_it.then(|| (wrong.data.clone(), format!("axis {name}")))
+    is_it.then(|| (wrong.data.clone(), Key::new(format!("axis {direction}"))))
 }
 
 /// Zeros of channels and of runs that were not taken. The lines are right otherwise.
@@ -178,8 +184,8 @@ pub(super) fn offsets(data: &[Datum], lines: &[Line]) -> Vec<Part> {
     let mut found = Vec::new();
     for channel in Axis::ALL {
         let own: Vec<&Line> = lines.iter().filter(|line| line.channel == channel).collect();
-        found.extend(of_channel(data, &own, channel, most));
-        if found.last().is_some_and(|part: &Part| part.location == column(channel)) {
+        if let Some(of_all) = of_channel(data, &own, channel, most) {
+            found.push(of_all);
             continue;
         }
         let zeros: Vec<Vec<RunZero>> = own.iter().map(|line| zeros_of_runs(data, line)).collect();
@@ -190,13 +196,13 @@ pub(super) fn offsets(data: &[Datum], lines: &[Line]) -> Vec<Part> {
             // along an axis on which the rod hardly moves a zero is off by more than that in any
             // run
             let moved = moved(line.axis).max(FAR * most);
-            found.extend(of_run(data, line, &zeros[k], &of_sensor, moved));
+            found.extend(of_run(data, &zeros[k], &of_sensor, moved));
         }
     }
     found
 }
 
-/// What a datum is off its line through the origin, m.
+/// How far a datum is off its line through the origin, m.
 fn off(data: &[Datum], line: &Line, i: usize) -> f64 {
     data[i].measured - line.fit.slope * data[i].signed_load()
 }
@@ -208,37 +214,31 @@ fn of_channel(data: &[Datum], lines: &[&Line], channel: Axis, most: f64) -> Opti
     let zero = median(&values)?;
     let scatter = spread(&values, zero)?;
     // play and friction depend on the direction, and on the axis
-    let is_of = |is_of: &dyn Fn(&Datum) -> bool| zeros.iter().any(|(i, _)| is_of(&data[*i]));
-    let is_independent = is_of(&|d| d.direction.axis != channel)
-        || is_of(&|d| d.load == 0.0)
-        || (is_of(&|d| d.direction.sign > 0) && is_of(&|d| d.direction.sign < 0));
+    let has = |is_met: &dyn Fn(&Datum) -> bool| zeros.iter().any(|(i, _)| is_met(&data[*i]));
+    let is_independent = has(&|d| d.direction.axis != channel)
+        || has(&|d| d.load == 0.0)
+        || (has(&|d| d.direction.sign > 0) && has(&|d| d.direction.sign < 0));
     let least = if is_independent { FAR } else { FAR_FOR_PLAY };
     let near = values.iter().filter(|value| (*value - zero).abs() < 2.0 * CONSTANT * zero.abs()).count();
     if zero.abs() < least * most || scatter > CONSTANT * zero.abs() || near * 10 < values.len() * 9 {
         return None;
     }
     let data = zeros.iter().map(|(i, _)| *i).collect();
-    Some(part(column(channel), zero, scatter / (values.len() as f64).sqrt(), data))
+    Some(part(Key::new(column(channel)), zero, scatter / (values.len() as f64).sqrt(), data))
 }
 
 fn spread(values: &[f64], about: f64) -> Option<f64> {
     Some(1.4826 * median(&values.iter().map(|value| (value - about).abs()).collect::<Vec<_>>())?)
 }
 
-fn part(location: String, zero: f64, error: f64, data: Vec<usize>) -> Part {
-    let estimate = Estimate {
-        name: "um".into(),
-        unit: UM,
-        value: zero,
-        low: zero - 2.0 * error,
-        high: zero + 2.0 * error,
-    };
-    let said: Quantity = estimate.quantity();
+fn part(location: Key, zero: f64, error: f64, data: Vec<usize>) -> Part {
+    let estimate = Estimate::new("um", zero, zero - 2.0 * error, zero + 2.0 * error);
+    let zero_um: Quantity = estimate.quantity();
     Part {
         effect: &OFFSET_MISTAKE,
         observed: format!(
             "A zero was not taken ({location}): subtract {} from these readings",
-            said.say("µm")
+            zero_um.say("µm")
         ),
         looks_like: format!("{location}: a zero looks not taken"),
         location,
@@ -285,9 +285,9 @@ fn zeros_of_runs(data: &[Datum], line: &Line) -> Vec<RunZero> {
 }
 
 /// Runs that start elsewhere than most runs (`own`) of their line; what stays until the end has
-/// slipped. Of the last run alone nobody can say which. Where the run before or after it among all
+/// slipped; of the last run alone it may be either. Where the run before or after it among all
 /// those `of_sensor`, along whatever axis, is off as far, it is no zero of one run.
-fn of_run(data: &[Datum], line: &Line, own: &[RunZero], of_sensor: &[&RunZero], moved: f64) -> Vec<Part> {
+fn of_run(data: &[Datum], own: &[RunZero], of_sensor: &[&RunZero], moved: f64) -> Vec<Part> {
     let is_far = |k: usize| own[k].distance.abs() > FAR_FOR_A_RUN * moved && moved > 0.0;
     let far: Vec<usize> = (0..own.len()).filter(|&k| is_far(k)).collect();
     let stays = far.len() > 1 && far.iter().enumerate().all(|(n, &k)| k == own.len() - far.len() + n);
@@ -307,13 +307,8 @@ fn of_run(data: &[Datum], line: &Line, own: &[RunZero], of_sensor: &[&RunZero], 
         if zero.most > 2.0 * CONSTANT * zero.distance.abs() || zero.data.len() < 2 || goes_on(zero) {
             continue;
         }
-        let first = &data[zero.data[0]];
-        let rows = (first.row, zero.data.last().map_or(first.row, |&i| data[i].row));
-        let name = column(line.channel);
-        let location = match &first.trial {
-            Some(trial) => format!("{name}, axis {}, trial {trial}", line.axis),
-            None => format!("{name}, axis {}, rows {} to {}", line.axis, rows.0, rows.1),
-        };
+        let ends = [zero.data[0], zero.data[zero.data.len() - 1]].map(|i| &data[i]);
+        let location = sensor_in_run(ends[0], ends[1]);
         let error = zero.scatter / (zero.data.len() as f64).sqrt();
         let mut part = part(location, zero.distance, error, zero.data.clone());
         if k + 1 == own.len() {

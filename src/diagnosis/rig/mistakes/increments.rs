@@ -9,11 +9,13 @@
 
 use std::collections::BTreeMap;
 
-use super::super::datum::Datum;
 use super::super::effects::mistakes::INCREMENT_MISTAKE;
 use super::lines::Line;
-use super::moves::column;
 use super::part::Part;
+use crate::diagnosis::rig::recording::columns::columns;
+use crate::diagnosis::rig::recording::datum::Datum;
+use crate::inference::Key;
+use crate::spatial::Axis;
 
 /// Share of the squares that increments may leave, and that offsets must.
 const LEFT: f64 = 0.03;
@@ -31,12 +33,13 @@ pub(super) struct Increments {
     pub offsets: Vec<f64>,
 }
 
-/// True of all lines that show anything; `by_rod` are the slopes of the rod file, m/N.
+/// All readings are such where all lines that show anything are; `by_rod` are the slopes of the rod
+/// file, m/N.
 pub(super) fn found(data: &[Datum], lines: &[Line], by_rod: &[f64]) -> Option<Increments> {
     let mut steps = vec![0.0; data.len()];
     let mut sums = vec![0.0; data.len()];
     let mut before: BTreeMap<(usize, usize), (f64, f64)> = BTreeMap::new();
-    let line_of = |datum: &Datum| lines.iter().position(|line| line.is_of(datum));
+    let line_of = |datum: &Datum| lines.iter().position(|line| line.holds(datum));
     for (i, datum) in data.iter().enumerate() {
         let (load, sum) = before.entry((datum.run, line_of(datum)?)).or_default();
         steps[i] = datum.signed_load() - *load;
@@ -57,11 +60,11 @@ pub(super) fn found(data: &[Datum], lines: &[Line], by_rod: &[f64]) -> Option<In
     if shown.is_empty() || !are_all {
         return None;
     }
-    let mut columns: Vec<String> = data.iter().map(|datum| column(datum.channel)).collect();
-    columns.sort();
-    columns.dedup();
-    let location = columns.join(", ");
-    let verb = if columns.len() == 1 { "is" } else { "are" };
+    let mut channels: Vec<Axis> = data.iter().map(|datum| datum.channel).collect();
+    channels.sort();
+    channels.dedup();
+    let location = Key::new(columns(&channels));
+    let verb = if channels.len() == 1 { "is" } else { "are" };
     let part = Part {
         effect: &INCREMENT_MISTAKE,
         observed: format!(
@@ -69,7 +72,7 @@ pub(super) fn found(data: &[Datum], lines: &[Line], by_rod: &[f64]) -> Option<In
         ),
         looks_like: format!(
             "{location} {} like increments",
-            if columns.len() == 1 { "looks" } else { "look" }
+            if channels.len() == 1 { "looks" } else { "look" }
         ),
         location,
         estimates: Vec::new(),

@@ -10,7 +10,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::super::datum::Datum;
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::spatial::Axis;
 
 /// Prior of what a line does not pass through the origin by, as a share of its largest reading.
@@ -63,7 +63,7 @@ impl Fit {
 
 impl Line {
     /// True where a datum is on the line.
-    pub fn is_of(&self, datum: &Datum) -> bool {
+    pub fn holds(&self, datum: &Datum) -> bool {
         let stations = [datum.load_station, datum.read_station];
         (self.axis, self.channel, self.stations) == (datum.direction.axis, datum.channel, stations)
     }
@@ -79,7 +79,7 @@ pub(super) fn lines(data: &[Datum], is_wanted: impl Fn(usize) -> bool) -> Vec<Li
     let mut found: Vec<Line> = Vec::new();
     for (index, datum) in data.iter().enumerate().filter(|(index, _)| is_wanted(*index)) {
         let stations = [datum.load_station, datum.read_station];
-        match found.iter_mut().find(|line| line.is_of(datum)) {
+        match found.iter_mut().find(|line| line.holds(datum)) {
             Some(line) => line.data.push(index),
             None => found.push(Line {
                 axis: datum.direction.axis,

@@ -16,7 +16,8 @@ use nalgebra::DVector;
 
 use super::super::effects::mistakes::UNIT_MISTAKE;
 use super::super::model::RigModel;
-use super::moves::{HARDLY_BESIDE, like_physics};
+use super::labels::{HARDLY_BESIDE, like_physics};
+use crate::diagnosis::rig::recording::columns::load_column;
 use crate::inference::{Evidence, Finding, ForwardModel, Location, Rival, Term};
 use crate::linalg::least_squares;
 
@@ -37,19 +38,20 @@ pub fn lookalikes(model: &RigModel, evidence: &Evidence, findings: &[Finding], n
         .filter(|(k, _)| *k != number)
         .flat_map(|(_, other)| terms_of(other))
         .collect();
-    let (column, units) = like_physics(model.readings.load_column);
+    let column = load_column(model.readings.load_column);
     let predicted = DVector::from_iterator(model.data.len(), model.data.iter().map(|datum| datum.predicted));
     let fitted = factor_of(&predicted, &model.response(&own));
-    let beside_zeros = |of: &DVector<f64>| match least_squares(&evidence.nuisance, of) {
-        Ok(zeros) => of - &evidence.nuisance * zeros,
-        Err(_) => of.clone(),
+    let beside_zeros = |values: &DVector<f64>| match least_squares(&evidence.nuisance, values) {
+        Ok(zeros) => values - &evidence.nuisance * zeros,
+        Err(_) => values.clone(),
     };
     let recorded = &evidence.residual - model.response(&others);
     let recorded = factor_of(&beside_zeros(&predicted), &beside_zeros(&recorded));
     let is_near = |factor: f64| {
         [fitted, recorded].into_iter().flatten().any(|scale| (scale / factor).ln().abs() < HARDLY_BESIDE.ln())
     };
-    let near = units.into_iter().filter(|(_, factor)| is_near(*factor));
+    let units = like_physics(model.readings.load_column).into_iter();
+    let near = units.filter(|(_, factor)| is_near(*factor));
     near.map(|(unit, _)| {
         Rival::without_term(&UNIT_MISTAKE, Location::key(format!("{column} in {unit}")), 1.0)
     })

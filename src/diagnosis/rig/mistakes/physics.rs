@@ -11,64 +11,16 @@
 //! Everything is relative to the rod, so that units do not matter, and the density is that of the
 //! slopes as recorded, so that no rescaling is favoured.
 
+mod mood;
+
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3};
 
-use super::super::structure::{Softening, Structure};
+use self::mood::{MOODS, Mood};
 use super::lines::Line;
+use crate::diagnosis::rig::mechanics::structure::{Softening, Structure};
 use crate::error::Result;
 use crate::rod::Rod;
 use crate::spatial::Axis;
-
-/// Standard deviations of the columns: how far off rod, rig and sensors are.
-struct Mood {
-    log_weight: f64,
-    /// Of the common factor about its best value, and of that value about 1.
-    scale: (f64, f64),
-    shear: f64,
-    joint: f64,
-    axis: f64,
-    channel: f64,
-    turn: f64,
-    own: f64,
-}
-
-/// As files are: moduli 2 %, alignment 1°.
-const FILE: Mood = Mood {
-    log_weight: -0.7,
-    scale: (0.02, 0.02),
-    shear: 0.03,
-    joint: 0.02,
-    axis: 0.01,
-    channel: 0.01,
-    turn: 0.02,
-    own: 0.01,
-};
-/// Four times that.
-const SOME: Mood = Mood {
-    log_weight: -1.2,
-    scale: (0.02, 0.08),
-    shear: 0.12,
-    joint: 0.08,
-    axis: 0.04,
-    channel: 0.04,
-    turn: 0.08,
-    own: 0.03,
-};
-/// Everything far off.
-const MUCH: Mood = Mood {
-    log_weight: -3.0,
-    scale: (0.05, 0.4),
-    shear: 0.3,
-    joint: 0.2,
-    axis: 0.15,
-    channel: 0.12,
-    turn: 0.15,
-    own: 0.15,
-};
-/// One common factor: moduli or walls are not those of the file; a rod that is three times softer
-/// is within three times this.
-const STIFFNESS: Mood = Mood { log_weight: -5.0, scale: (0.02, 0.45), ..FILE };
-const MOODS: [Mood; 4] = [FILE, SOME, MUCH, STIFFNESS];
 
 /// One thing far off, each as likely.
 const SINGLE: f64 = -5.0;
@@ -177,10 +129,10 @@ fn known(line: &Line) -> f64 {
 impl Seen<'_> {
     /// Expected slope of each line, m/N.
     pub fn expected(&self) -> Vec<f64> {
-        (0..self.lines.len()).map(|k| self.of(k, &self.physics.compliance)).collect()
+        (0..self.lines.len()).map(|k| self.slope(k, &self.physics.compliance)).collect()
     }
 
-    fn of(&self, line: usize, parts: &[Matrix3<f64>]) -> f64 {
+    fn slope(&self, line: usize, parts: &[Matrix3<f64>]) -> f64 {
         let view = &self.views[line];
         view.factor * parts[self.pair[line]][(view.channel.index(), view.axis.index())]
     }
@@ -275,7 +227,7 @@ impl Seen<'_> {
 
     fn columns(&self, expected: &[f64]) -> Columns {
         let n = self.lines.len();
-        let column = |of: &dyn Fn(usize) -> f64| DVector::from_fn(n, |k, _| of(k));
+        let column = |entry: &dyn Fn(usize) -> f64| DVector::from_fn(n, |k, _| entry(k));
         let compliance = |k: usize, channel: Axis, axis: Axis| {
             self.views[k].factor * self.physics.compliance[self.pair[k]][(channel.index(), axis.index())]
         };
@@ -294,17 +246,18 @@ impl Seen<'_> {
             }));
         }
         turns.retain(|turn| turn.amax() > 0.0);
-        let part = |is_of: &dyn Fn(&View) -> bool| {
-            column(&|k| if is_of(&self.views[k]) { expected[k] } else { 0.0 })
+        let part = |is_seen: &dyn Fn(&View) -> bool| {
+            column(&|k| if is_seen(&self.views[k]) { expected[k] } else { 0.0 })
         };
         let whole = column(&|k| expected[k]);
-        let shear = column(&|k| self.of(k, &self.physics.shear));
-        let joints: Vec<_> = self.physics.joints.iter().map(|joint| column(&|k| self.of(k, joint))).collect();
+        let shear = column(&|k| self.slope(k, &self.physics.shear));
+        let joints: Vec<_> =
+            self.physics.joints.iter().map(|joint| column(&|k| self.slope(k, joint))).collect();
         let axes: Vec<_> = Axis::ALL.map(|axis| part(&|view| view.axis == axis)).into();
         let channels: Vec<_> = Axis::ALL.map(|channel| part(&|view| view.channel == channel)).into();
-        let squares = |of: &[DVector<f64>]| {
+        let squares = |columns: &[DVector<f64>]| {
             let mut sum = DMatrix::zeros(n, n);
-            of.iter().for_each(|column| sum.ger(1.0, column, column, 1.0));
+            columns.iter().for_each(|column| sum.ger(1.0, column, column, 1.0));
             sum
         };
         let of_whole = squares(std::slice::from_ref(&whole));
@@ -323,8 +276,8 @@ impl Seen<'_> {
     }
 
     /// The Gaussian model of one mood, solved. What physics adds is measured by the deflections
-    /// `sizes` (ln of what they are of the rod's own): a part that yields less than nothing does
-    /// not make a rod stiff.
+    /// `sizes` (ln of what they are of the rod's own): a part that gives way by less than nothing
+    /// does not make a rod stiff.
     fn solved(
         &self,
         expected: &[f64],
@@ -367,7 +320,7 @@ impl Seen<'_> {
             terms.push(weight + with.log_density + gained);
         };
         columns.joints.iter().for_each(|joint| single(joint, SINGLE_JOINT, ONE_JOINT, true));
-        // what yields in bending mostly does so in torsion
+        // what gives way in bending mostly does so in torsion
         columns.joints.chunks(2).for_each(|both| {
             single(
                 &both.iter().fold(DVector::zeros(both[0].len()), |sum, part| sum + part),

@@ -1,12 +1,13 @@
 //! Which mistakes of labels, units and files turn readings that fit nothing into readings that fit.
 //!
-//! A beam search: one mistake, then a second beside each of the best, then a third. A state is kept
-//! where it is a thousand times more probable than the one that it grew from.
+//! A beam search: one mistake, then a second beside each of the best, then a third. A combination
+//! is kept where it is a thousand times more probable than the one that it grew from.
 
 use super::super::effects::mistakes::{SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
-use super::change::{Change, Move};
 use super::lines::Line;
 use super::physics::{Physics, Seen, Verdict, View};
+use super::possible::PossibleMistake;
+use super::relabelling::Relabelling;
 use super::rods::Body;
 use crate::inference::Kind;
 use crate::spatial::Axis;
@@ -36,7 +37,7 @@ const CURED: f64 = 0.25;
 const SHOWN: f64 = 0.03;
 
 /// Lines of readings against a rod and what else it may be.
-pub(super) struct Search<'a> {
+pub(super) struct LinesOnRod<'a> {
     pub lines: &'a [Line],
     pub pair: &'a [usize],
     pub pairs: &'a [[Option<f64>; 2]],
@@ -47,22 +48,25 @@ pub(super) struct Search<'a> {
     pub is_possible: bool,
 }
 
-/// Mistakes together, by their numbers among the moves.
+/// Mistakes together.
 #[derive(Clone)]
-pub(super) struct State {
-    pub moves: Vec<usize>,
-    pub change: Change,
+pub(super) struct Combination {
+    /// Their numbers among the possible ones.
+    pub mistakes: Vec<usize>,
+    /// What undoes them all.
+    pub relabelling: Relabelling,
     pub log_scale: f64,
     /// Ln of its probability, less a constant.
     pub score: f64,
 }
 
 /// A mistake that was found.
-pub(super) struct Found {
+pub(super) struct NamedMistake {
+    /// Its number among the possible ones.
     pub number: usize,
     /// Ln of the odds against what there is without it.
     pub log_odds: f64,
-    /// Moves that explain as much in its place, with the odds against them.
+    /// Other possible ones that explain as much in its place, with the odds against them.
     pub rivals: Vec<(usize, f64)>,
     /// Ln of what the lines have in common, measured over expected, without it.
     pub log_scale_before: f64,
@@ -70,10 +74,10 @@ pub(super) struct Found {
     pub explains: f64,
 }
 
-impl Search<'_> {
+impl LinesOnRod<'_> {
     /// True where no ordinary physics would leave so much, so that mistakes are worth a try.
     pub fn is_implausible(&self) -> bool {
-        let seen = self.seen(self.base, &Change::default());
+        let seen = self.seen(self.base, &Relabelling::default());
         let expected = seen.expected();
         let all: Vec<usize> = (0..self.lines.len()).collect();
         let most = all.iter().map(|&k| self.deflection(k, expected[k])).fold(0.0, f64::max);
@@ -81,8 +85,8 @@ impl Search<'_> {
             let shown = part.iter().map(|&k| self.deflection(k, expected[k])).fold(0.0, f64::max);
             shown > SHOWN * most && self.left(part, &expected, 0.0) > IMPLAUSIBLE
         };
-        let lines_where = |is_of: &dyn Fn(&Line) -> bool| -> Vec<usize> {
-            all.iter().copied().filter(|&k| is_of(&self.lines[k])).collect()
+        let lines_where = |is_met: &dyn Fn(&Line) -> bool| -> Vec<usize> {
+            all.iter().copied().filter(|&k| is_met(&self.lines[k])).collect()
         };
         !self.is_possible
             || seen.against_the_load() > 0
@@ -122,26 +126,26 @@ impl Search<'_> {
 
     /// What it costs that the readings, once they are corrected, are larger than any that a rod
     /// survives.
-    fn bent_too_far(&self, change: &Change) -> f64 {
+    fn bent_too_far(&self, relabelling: &Relabelling) -> f64 {
         let is_too_far = |line: &Line| {
-            let reading = change.reading[line.axis.index()][line.channel.index()];
+            let reading = relabelling.reading[line.axis.index()][line.channel.index()];
             (line.fit.slope * reading).abs() * line.largest_load > BENT * self.length
         };
-        if change.body == 0 && self.lines.iter().any(is_too_far) { BENT_TOO_FAR } else { 0.0 }
+        if relabelling.body == 0 && self.lines.iter().any(is_too_far) { BENT_TOO_FAR } else { 0.0 }
     }
 
     /// What the slopes say of a rod, no mistakes.
     pub fn verdict_of(&self, physics: &Physics) -> Verdict {
-        self.seen(physics, &Change::default()).verdict()
+        self.seen(physics, &Relabelling::default()).verdict()
     }
 
-    fn seen<'s>(&'s self, physics: &'s Physics, change: &Change) -> Seen<'s> {
+    fn seen<'s>(&'s self, physics: &'s Physics, relabelling: &Relabelling) -> Seen<'s> {
         let view = |line: &Line| {
             let (axis, channel) = (line.axis.index(), line.channel.index());
             View {
-                channel: Axis::ALL[change.channel[channel]],
-                axis: Axis::ALL[change.axis[axis]],
-                factor: change.load[axis] / change.reading[axis][channel],
+                channel: Axis::ALL[relabelling.channel[channel]],
+                axis: Axis::ALL[relabelling.axis[axis]],
+                factor: relabelling.load[axis] / relabelling.reading[axis][channel],
             }
         };
         let views = self.lines.iter().map(view).collect();
@@ -149,62 +153,62 @@ impl Search<'_> {
     }
 }
 
-/// A search with the moves that there are.
-pub(super) struct Trial<'a> {
-    pub search: Search<'a>,
-    pub moves: &'a [Move],
+/// The search for the mistakes that explain these lines.
+pub(super) struct MistakeSearch<'a> {
+    pub lines: LinesOnRod<'a>,
+    /// All that may have been made.
+    pub possible: &'a [PossibleMistake],
     /// By number of the body, from 1; `None` where the readings cannot be on it.
     pub bodies: &'a [Option<Physics>],
 }
 
-impl Trial<'_> {
-    fn physics(&self, change: &Change) -> Option<&Physics> {
-        match change.body {
-            0 => Some(self.search.base),
+impl MistakeSearch<'_> {
+    fn physics(&self, relabelling: &Relabelling) -> Option<&Physics> {
+        match relabelling.body {
+            0 => Some(self.lines.base),
             number => self.bodies[number - 1].as_ref(),
         }
     }
 
-    fn state(&self, moves: Vec<usize>) -> Option<State> {
-        let mut change = Change::default();
-        for &number in &moves {
-            change = change.and(&self.moves[number].change)?;
-        }
-        if change.body == 0 && !self.search.is_possible {
+    fn combination(&self, mistakes: Vec<usize>) -> Option<Combination> {
+        let relabelling = self.relabelling(&mistakes)?;
+        if relabelling.body == 0 && !self.lines.is_possible {
             let score = f64::NEG_INFINITY;
-            return moves.is_empty().then_some(State { moves, change, log_scale: 0.0, score });
+            return mistakes.is_empty().then_some(Combination {
+                mistakes,
+                relabelling,
+                log_scale: 0.0,
+                score,
+            });
         }
-        let Verdict { log_evidence, log_scale, .. } =
-            self.search.seen(self.physics(&change)?, &change).verdict();
-        let is_within = moves.iter().all(|&number| log_scale.abs() <= self.moves[number].within.ln());
-        let prior: f64 = moves.iter().map(|&number| RARE + self.moves[number].log_prior).sum();
-        let score = log_evidence + prior - self.search.bent_too_far(&change);
-        (is_within || moves.is_empty()).then_some(State { moves, change, log_scale, score })
+        let own = self.scored(mistakes, relabelling)?;
+        let is_near = |&number: &usize| own.log_scale.abs() <= self.possible[number].within.ln();
+        own.mistakes.iter().all(is_near).then_some(own)
     }
 
-    fn gained(after: &State, before: &State) -> f64 {
+    fn gained(after: &Combination, before: &Combination) -> f64 {
         if after.score.is_finite() { after.score - before.score } else { 0.0 }
     }
 
     /// The mistakes, with what the readings and the rod become.
-    pub fn found(&self) -> Option<(State, Vec<Found>)> {
-        let base = self.state(Vec::new())?;
+    pub fn found(&self) -> Option<(Combination, Vec<NamedMistake>)> {
+        let base = self.combination(Vec::new())?;
         let mut best = base.clone();
         let mut frontier = vec![base.clone()];
         for _ in 0..MOST_MISTAKES {
-            let mut next: Vec<State> = Vec::new();
+            let mut next: Vec<Combination> = Vec::new();
             for from in &frontier {
-                for number in 0..self.moves.len() {
-                    let mut moves = from.moves.clone();
-                    if moves.contains(&number) {
+                for number in 0..self.possible.len() {
+                    let mut mistakes = from.mistakes.clone();
+                    if mistakes.contains(&number) {
                         continue;
                     }
-                    moves.push(number);
-                    moves.sort_unstable();
-                    if next.iter().any(|known| known.moves == moves) {
+                    mistakes.push(number);
+                    mistakes.sort_unstable();
+                    if next.iter().any(|known| known.mistakes == mistakes) {
                         continue;
                     }
-                    next.extend(self.state(moves).filter(|state| Self::gained(state, from) > ODDS));
+                    next.extend(self.combination(mistakes).filter(|own| Self::gained(own, from) > ODDS));
                 }
             }
             next.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -217,50 +221,50 @@ impl Trial<'_> {
         }
         // one that is not needed, or does not cure what it acts on, does not speak against the
         // others
-        while !best.moves.is_empty() {
-            let judged: Vec<Option<Found>> =
-                best.moves.iter().map(|&number| self.judged(&best, number)).collect();
+        while !best.mistakes.is_empty() {
+            let judged: Vec<Option<NamedMistake>> =
+                best.mistakes.iter().map(|&number| self.judged(&best, number)).collect();
             let Some(wrong) = judged.iter().position(Option::is_none) else {
-                let mut found: Vec<Found> = judged.into_iter().flatten().collect();
+                let mut found: Vec<NamedMistake> = judged.into_iter().flatten().collect();
                 found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
                 return Some((best, found));
             };
-            best.moves.remove(wrong);
-            best = self.state(best.moves)?;
+            best.mistakes.remove(wrong);
+            best = self.combination(best.mistakes)?;
         }
         None
     }
 
     /// One mistake of several; `None` where it is not needed or does not cure what it acts on.
-    fn judged(&self, best: &State, number: usize) -> Option<Found> {
-        let rest: Vec<usize> = best.moves.iter().copied().filter(|&other| other != number).collect();
+    fn judged(&self, best: &Combination, number: usize) -> Option<NamedMistake> {
+        let rest: Vec<usize> = best.mistakes.iter().copied().filter(|&other| other != number).collect();
         let is_wrong_body =
-            rest.iter().all(|&other| self.moves[other].change.body == 0) && !self.search.is_possible;
+            rest.iter().all(|&other| self.possible[other].relabelling.body == 0) && !self.lines.is_possible;
         let before = match is_wrong_body {
-            true => State { score: f64::NEG_INFINITY, ..best.clone() },
+            true => Combination { score: f64::NEG_INFINITY, ..best.clone() },
             // what is left without it may be beyond what a unit allows
             false => self.without(&rest)?,
         };
         let log_odds = (best.score - before.score).min(1e3);
-        let expected = self.search.seen(self.physics(&best.change)?, &best.change).expected();
+        let expected = self.lines.seen(self.physics(&best.relabelling)?, &best.relabelling).expected();
         let (cured, explains) = match is_wrong_body {
             true => (true, 0.0),
             false => {
-                let old = self.search.seen(self.physics(&before.change)?, &before.change).expected();
+                let old = self.lines.seen(self.physics(&before.relabelling)?, &before.relabelling).expected();
                 let is_changed =
                     |&k: &usize| (expected[k] - old[k]).abs() > 0.1 * expected[k].abs().max(old[k].abs());
                 let part: Vec<usize> = (0..expected.len()).filter(is_changed).collect();
-                let left = self.search.left(&part, &old, 0.0);
-                let leaves = self.search.left(&part, &expected, best.log_scale);
-                let effect = self.moves[number].effect;
-                let is_name = [&SIGN_MISTAKE, &SWAP_MISTAKE].contains(&effect) && best.change.body == 0;
+                let left = self.lines.left(&part, &old, 0.0);
+                let leaves = self.lines.left(&part, &expected, best.log_scale);
+                let effect = self.possible[number].effect;
+                let is_name = [&SIGN_MISTAKE, &SWAP_MISTAKE].contains(&effect) && best.relabelling.body == 0;
                 let most = if is_name { LEFT_BY_NAME } else { LEFT_BY_FACTOR };
                 let change =
-                    |k: &usize| ((expected[*k] - old[*k]) * self.search.lines[*k].largest_load).powi(2);
+                    |k: &usize| ((expected[*k] - old[*k]) * self.lines.lines[*k].largest_load).powi(2);
                 let rms = (part.iter().map(change).sum::<f64>() / part.len().max(1) as f64).sqrt();
-                let leaves = leaves + self.search.scattered(&part, &expected, best.log_scale);
+                let leaves = leaves + self.lines.scattered(&part, &expected, best.log_scale);
                 // walls and lengths are off by a third in many a file: a unit is more than that
-                let is_key = effect == &UNIT_MISTAKE && best.change.body != before.change.body;
+                let is_key = effect == &UNIT_MISTAKE && best.relabelling.body != before.relabelling.body;
                 let least = if is_key { FAR_OFF } else { IMPLAUSIBLE };
                 (left > least && leaves < most && leaves < CURED * left, rms)
             }
@@ -269,30 +273,38 @@ impl Trial<'_> {
             return None;
         }
         let with = |other: usize| {
-            let mut moves = rest.clone();
-            moves.push(other);
-            moves.sort_unstable();
-            self.state(moves).map(|state| (other, best.score - state.score))
+            let mut mistakes = rest.clone();
+            mistakes.push(other);
+            mistakes.sort_unstable();
+            self.combination(mistakes).map(|own| (other, best.score - own.score))
         };
         let is_other = |other: &usize| *other != number && !rest.contains(other);
-        let mut rivals: Vec<(usize, f64)> = (0..self.moves.len()).filter(is_other).filter_map(with).collect();
+        let mut rivals: Vec<(usize, f64)> =
+            (0..self.possible.len()).filter(is_other).filter_map(with).collect();
         rivals.retain(|(_, log_odds)| *log_odds < ALIKE);
         rivals.sort_by(|a, b| a.1.total_cmp(&b.1));
         let rivals = rivals.into_iter().map(|(other, log_odds)| (other, log_odds.exp())).collect();
-        debug_assert_eq!(self.moves[number].effect.kind, Kind::Mistake);
-        Some(Found { number, log_odds, rivals, log_scale_before: before.log_scale, explains })
+        debug_assert_eq!(self.possible[number].effect.kind, Kind::Mistake);
+        Some(NamedMistake { number, log_odds, rivals, log_scale_before: before.log_scale, explains })
     }
 
-    fn without(&self, moves: &[usize]) -> Option<State> {
-        let mut change = Change::default();
-        for &number in moves {
-            change = change.and(&self.moves[number].change)?;
-        }
-        let Verdict { log_evidence, log_scale, .. } =
-            self.search.seen(self.physics(&change)?, &change).verdict();
-        let prior: f64 = moves.iter().map(|&number| RARE + self.moves[number].log_prior).sum();
-        let score = log_evidence + prior - self.search.bent_too_far(&change);
-        Some(State { moves: moves.to_vec(), change, log_scale, score })
+    fn without(&self, mistakes: &[usize]) -> Option<Combination> {
+        self.scored(mistakes.to_vec(), self.relabelling(mistakes)?)
+    }
+
+    /// What undoes all of them; `None` where they contradict each other.
+    fn relabelling(&self, mistakes: &[usize]) -> Option<Relabelling> {
+        let undone = mistakes.iter().map(|&number| &self.possible[number].relabelling);
+        undone.into_iter().try_fold(Relabelling::default(), |all, one| all.and(one))
+    }
+
+    /// Mistakes together, however far from 1 the factor is that all lines have in common.
+    fn scored(&self, mistakes: Vec<usize>, relabelling: Relabelling) -> Option<Combination> {
+        let seen = self.lines.seen(self.physics(&relabelling)?, &relabelling);
+        let Verdict { log_evidence, log_scale, .. } = seen.verdict();
+        let prior: f64 = mistakes.iter().map(|&number| RARE + self.possible[number].log_prior).sum();
+        let score = log_evidence + prior - self.lines.bent_too_far(&relabelling);
+        Some(Combination { mistakes, relabelling, log_scale, score })
     }
 }
 

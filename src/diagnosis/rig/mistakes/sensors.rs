@@ -2,13 +2,13 @@
 
 use std::collections::HashSet;
 
-use super::super::datum::Datum;
 use super::super::effects::mistakes::{SATURATED_SENSOR, STUCK_SENSOR};
-use super::super::evidence::resolution;
 use super::lines::{Line, lines};
-use super::moves::column;
 use super::part::Part;
-use crate::inference::{Estimate, Quantity};
+use crate::diagnosis::rig::recording::columns::{column, rows_between};
+use crate::diagnosis::rig::recording::datum::Datum;
+use crate::diagnosis::rig::recording::evidence::resolution;
+use crate::inference::{Estimate, Key, Quantity};
 use crate::spatial::Axis;
 use crate::units::{UM, significant};
 
@@ -57,15 +57,16 @@ pub(super) struct Expected {
 pub(super) fn stuck(data: &[Datum], lines: &[Line], expected: Option<&Expected>) -> Vec<Part> {
     let is_scale_right = expected.is_some_and(|expected| expected.scale.ln().abs() < RIGHT);
     let expected = expected.map(|expected| &expected.slopes[..]);
-    let deflections: Vec<f64> =
-        (0..lines.len()).map(|k| expected.map_or(0.0, |of| of[k].abs() * lines[k].largest_load)).collect();
+    let deflections: Vec<f64> = (0..lines.len())
+        .map(|k| expected.map_or(0.0, |slopes| slopes[k].abs() * lines[k].largest_load))
+        .collect();
     let most = deflections.iter().copied().fold(0.0, f64::max);
     let most_shown = lines.iter().map(|line| line.fit.slope.abs() * line.largest_load).fold(0.0, f64::max);
     // a display that is still but for noise is only stuck where the rod is right otherwise
     let is_right_else = |channel: Axis| {
         let is_right = |k: usize| {
             let size = deflections[k].max(lines[k].fit.slope.abs() * lines[k].largest_load);
-            let off = expected.map_or(0.0, |of| (lines[k].fit.slope - of[k]) * lines[k].largest_load);
+            let off = expected.map_or(0.0, |slopes| (lines[k].fit.slope - slopes[k]) * lines[k].largest_load);
             size < MOVES * most_shown || off.abs() < RIGHT * size
         };
         let mut others = (0..lines.len()).filter(|&k| lines[k].channel != channel).peekable();
@@ -110,8 +111,8 @@ pub(super) fn stuck(data: &[Datum], lines: &[Line], expected: Option<&Expected>)
         let name = column(channel);
         found.push(Part {
             effect: &STUCK_SENSOR,
-            location: name.clone(),
-            estimates: vec![Estimate { name: "um".into(), unit: UM, value, low, high }],
+            location: Key::new(&name),
+            estimates: vec![Estimate::new("um", value, low, high)],
             observed: format!(
                 "{name} shows {} whatever the load: leave the column out, and look at its sensor",
                 Quantity { value: value / UM, low: low / UM, high: high / UM }.say("µm")
@@ -173,8 +174,8 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
             let shown = side * limit / UM;
             found.push(Part {
                 effect: &SATURATED_SENSOR,
-                location: name.clone(),
-                estimates: vec![Estimate { name: "um".into(), unit: UM, value: side * limit, low: side * limit, high: side * limit }],
+                location: Key::new(&name),
+                estimates: vec![Estimate::new("um", side * limit, side * limit, side * limit)],
                 observed: format!(
                     "{name} is cut off at {} µm in {} readings: leave them out, or use a sensor of a longer range",
                     significant(shown, 4),
@@ -191,7 +192,9 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
 }
 
 fn range(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), of| (low.min(*of), high.max(*of)))
+    values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)))
 }
 
 /// True where most readings of a channel differ: displacements that were set are the same again and
@@ -251,17 +254,16 @@ pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
             if range.1 - range.0 < least {
                 continue;
             }
-            let (name, rows) = (column(channel), (data[at[0]].row, data[at[same - 1]].row));
+            let (name, rows) = (column(channel), rows_between(data[at[0]].row, data[at[same - 1]].row));
             let shown = significant(value / UM, 4);
             found.push(Part {
                 effect: &STUCK_SENSOR,
-                location: format!("{name}, rows {} to {}", rows.0, rows.1),
-                estimates: vec![Estimate { name: "um".into(), unit: UM, value, low: value, high: value }],
+                location: Key::new(&name).rows(&rows),
+                estimates: vec![Estimate::new("um", value, value, value)],
                 observed: format!(
-                    "{name} stays at {shown} µm in the rows {} to {} while the loads change: leave these readings out",
-                    rows.0, rows.1
+                    "{name} stays at {shown} µm in the {rows} while the loads change: leave these readings out"
                 ),
-                looks_like: format!("{name} looks stuck in the rows {} to {}", rows.0, rows.1),
+                looks_like: format!("{name} looks stuck in the {rows}"),
                 explains: range.1 - range.0,
                 data: at.to_vec(),
                 rivals: Vec::new(),
@@ -281,7 +283,7 @@ fn step_of(data: &[Datum], own: &[usize]) -> f64 {
 fn is_surely_flat(data: &[Datum], lines: &[Line], at: &[usize], change: f64) -> bool {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for &i in at {
-        let Some(line) = lines.iter().find(|line| line.is_of(&data[i])) else { return false };
+        let Some(line) = lines.iter().find(|line| line.holds(&data[i])) else { return false };
         if line.data.len() < MANY * at.len() {
             return false;
         }
@@ -298,7 +300,7 @@ fn expected(data: &[Datum], at: &[usize], without: &[usize]) -> Option<Vec<(f64,
     let rest = lines(data, |i| !without.contains(&i));
     let expected_at = |&i: &usize| {
         let d = &data[i];
-        let line = rest.iter().find(|line| line.is_of(d) && line.data.len() >= 2)?;
+        let line = rest.iter().find(|line| line.holds(d) && line.data.len() >= 2)?;
         if !line.has_slope {
             return through_origin(data, line, d);
         }
@@ -319,7 +321,7 @@ fn expected_of_rod(
     by_rod: &Expected,
 ) -> Option<Vec<(f64, f64)>> {
     let expected_at = |&i: &usize| {
-        let k = lines.iter().position(|line| line.is_of(&data[i]))?;
+        let k = lines.iter().position(|line| line.holds(&data[i]))?;
         let says = |i: usize| by_rod.slopes[k] * data[i].signed_load();
         let mut others = lines[k].data.iter().copied().filter(|i| !without.contains(i)).peekable();
         others.peek()?;

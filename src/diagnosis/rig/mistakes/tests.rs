@@ -5,10 +5,11 @@ mod named;
 mod parts;
 mod sensors;
 
+use super::mended::Mended;
 use super::*;
 use crate::diagnosis::rig::model::RigModel;
-use crate::diagnosis::rig::wanted::Wanted;
-use crate::inference::{ForwardModel, Term};
+use crate::diagnosis::rig::model::wanted::Wanted;
+use crate::inference::{Finding, ForwardModel, Location, Term};
 use crate::rig::readings::{Axis, Direction, Phase, Reading};
 use crate::section::Round;
 use crate::statistics::Random;
@@ -230,7 +231,7 @@ fn no_physics_is_a_mistake_however_large(bench: Bench) {
             }
             for times in [if index % 2 == 0 { 3.0f64 } else { 10.0 }, -10.0] {
                 let value = |p: &crate::inference::Parameter| {
-                    // a joint that alone yields twice as much as the whole rod could not be
+                    // a joint that alone gives way twice as much as the whole rod could not be
                     // distinguished from pounds
                     let most = if candidate.effect.name == "joint_compliance" { 5.0 } else { 10.0 };
                     let value = p.neutral + times.min(most) * p.size;
@@ -327,6 +328,6 @@ fn a_rod_is_known_by_the_lines_that_show_it() {
     let others = [("straight.toml".to_owned(), meant)];
     let known = mended(&readings, Some(&file), &others).unwrap();
     let named = known.found.iter().map(|found| found.location.to_string());
-    let tried = known.others.iter().map(|other| other.location.clone());
+    let tried = known.others.iter().map(|other| other.location.to_string());
     assert!(named.chain(tried).any(|at| at == "straight.toml"), "{:?}", known.found);
 }

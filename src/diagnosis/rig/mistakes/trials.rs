@@ -12,14 +12,16 @@
 //! it, in the trials that are right; r_max the largest under the same load. The scatter about the
 //! lines counts too: it is that of the others times the factor on the readings.
 
-use super::super::datum::Datum;
 use super::super::effects::mistakes::SIGN_MISTAKE;
 use super::super::numbering::numbered;
-use super::change::{Change, Move};
 use super::groups::group;
 use super::lines::{Fit, Line};
-use super::part::{Part, rows_name, trial_name};
+use super::part::Part;
+use super::possible::PossibleMistake;
+use super::relabelling::Relabelling;
 use super::search::{ALIKE as NO_WORSE, ODDS, RARE};
+use crate::diagnosis::rig::recording::columns::{rows_of, trial_name};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::statistics::median;
 
 /// Slopes that differ by less than this share, or by so many standard errors, may be one.
@@ -39,10 +41,10 @@ const LEFT: f64 = 0.02;
 /// What a rod file may leave of a class that it confirms.
 const CONFIRMED: f64 = 0.1;
 
-/// A change of the rows of some trials.
+/// A mistake in the rows of some trials.
 pub(super) struct InTrials {
     pub part: Part,
-    pub change: Change,
+    pub relabelling: Relabelling,
 }
 
 /// A line in one trial.
@@ -86,17 +88,17 @@ pub(super) struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// What is written otherwise in some trials than in the others, by `moves`; `by_rod` are the
-    /// slopes of the rod file, m/N.
-    pub fn found(&self, moves: &[Move], by_rod: Option<&[f64]>) -> Vec<InTrials> {
+    /// What is written otherwise in some trials than in the others, by one of these `mistakes`;
+    /// `by_rod` are the slopes of the rod file, m/N.
+    pub fn found(&self, mistakes: &[PossibleMistake], by_rod: Option<&[f64]>) -> Vec<InTrials> {
         let classes = &self.classes;
         if classes.len() < 2 || classes.len() > MOST_CLASSES {
             return Vec::new();
         }
         let count = |class: &[usize]| self.trial.iter().filter(|trial| class.contains(trial)).count();
         // of those that are as large, the first
-        let largest = |of: &mut dyn Iterator<Item = usize>| {
-            of.fold(None, |best: Option<usize>, class| match best {
+        let largest = |some: &mut dyn Iterator<Item = usize>| {
+            some.fold(None, |best: Option<usize>, class| match best {
                 Some(best) if count(&classes[best]) >= count(&classes[class]) => Some(best),
                 _ => Some(class),
             })
@@ -106,7 +108,7 @@ impl<'a> Table<'a> {
         let Some(right) = confirmed.or_else(|| largest(&mut (0..classes.len()))) else { return Vec::new() };
         let reference = self.lines_of(&classes[right]);
         let others = classes.iter().enumerate().filter(|(class, _)| *class != right);
-        others.filter_map(|(_, class)| self.explained(class, &reference, moves)).collect()
+        others.filter_map(|(_, class)| self.explained(class, &reference, mistakes)).collect()
     }
 
     /// True where all trials agree with each other.
@@ -143,7 +145,7 @@ impl<'a> Table<'a> {
             if self.cells[trial].iter().all(Option::is_none) {
                 continue;
             }
-            match classes.iter().position(|class| self.is_of(trial, class)) {
+            match classes.iter().position(|class| self.belongs_to(trial, class)) {
                 Some(class) => classes[class].push(trial),
                 None if classes.len() > MOST_CLASSES => break,
                 None => classes.push(vec![trial]),
@@ -152,17 +154,17 @@ impl<'a> Table<'a> {
         classes
     }
 
-    fn is_of(&self, trial: usize, class: &[usize]) -> bool {
+    fn belongs_to(&self, trial: usize, class: &[usize]) -> bool {
         let most = |trial: usize| self.cells[trial].iter().flatten().map(Cell::size).fold(0.0, f64::max);
         let is_in_class = |k: usize| class.iter().any(|&other| self.cells[other][k].is_some());
         let own = |k: &usize| self.cells[trial][*k].is_some();
         // the same loads, and other channels only
         let is_read_elsewhere = |k: usize| {
-            let is_of = |other: &usize| {
+            let has_its_loads = |other: &usize| {
                 let (line, other) = (&self.lines[k], &self.lines[*other]);
                 line.axis == other.axis && line.stations == other.stations
             };
-            let of_loads = || (0..self.lines.len()).filter(is_of);
+            let of_loads = || (0..self.lines.len()).filter(has_its_loads);
             of_loads().any(is_in_class) && !of_loads().filter(own).any(is_in_class)
         };
         if (0..self.lines.len()).filter(own).any(is_read_elsewhere) {
@@ -196,17 +198,17 @@ impl<'a> Table<'a> {
     fn is_confirmed(&self, class: &[usize], by_rod: &[f64]) -> bool {
         let right = |&slope: &f64| Some(Right { slope, error: 0.0, scatter: 0.0 });
         let right: Vec<_> = by_rod.iter().map(right).collect();
-        let compared = self.compared(class, &right, &Change::default(), |_| true);
+        let compared = self.compared(class, &right, &Relabelling::default(), |_| true);
         compared.is_some_and(|compared| compared.left < CONFIRMED)
     }
 
-    /// Some trials under a change against the lines that are right, and what is left of the lines
+    /// Some trials, relabelled, against the lines that are right, and what is left of the lines
     /// that `counts`; `None` where there is nothing to compare.
     fn compared(
         &self,
         class: &[usize],
         right: &[Option<Right>],
-        change: &Change,
+        relabelling: &Relabelling,
         counts: impl Fn(&Line) -> bool,
     ) -> Option<Compared> {
         let (mut misfit, mut off, mut all) = (0.0, 0.0, 0.0);
@@ -215,11 +217,12 @@ impl<'a> Table<'a> {
             for (k, line) in self.lines.iter().enumerate() {
                 let Some(cell) = self.cells[trial][k] else { continue };
                 let (axis, channel) = (line.axis.index(), line.channel.index());
-                let (load, reading) = (change.load[axis], change.reading[axis][channel]);
-                let is_of =
-                    |other: &Line| other.stations == line.stations && other.axis.index() == change.axis[axis];
-                let is_it = |other: &Line| is_of(other) && other.channel.index() == change.channel[channel];
-                let of_load = self.lines.iter().zip(right).filter(|(other, _)| is_of(other));
+                let (load, reading) = (relabelling.load[axis], relabelling.reading[axis][channel]);
+                let (meant_axis, meant_channel) = (relabelling.axis[axis], relabelling.channel[channel]);
+                let has_load =
+                    |other: &Line| other.stations == line.stations && other.axis.index() == meant_axis;
+                let is_it = |other: &Line| has_load(other) && other.channel.index() == meant_channel;
+                let of_load = self.lines.iter().zip(right).filter(|(other, _)| has_load(other));
                 let largest =
                     of_load.filter_map(|(_, is)| Some(is.as_ref()?.slope.abs())).fold(0.0, f64::max);
                 let factor = reading / load;
@@ -253,45 +256,52 @@ impl<'a> Table<'a> {
     }
 
     /// What some trials hold instead, where one change brings them back to the others.
-    fn explained<'m>(&self, class: &[usize], right: &[Option<Right>], moves: &'m [Move]) -> Option<InTrials> {
-        let tried = |one: &'m Move| {
-            let compared = self.compared(class, right, &one.change, |line| acts_on(&one.change, line))?;
+    fn explained<'m>(
+        &self,
+        class: &[usize],
+        right: &[Option<Right>],
+        mistakes: &'m [PossibleMistake],
+    ) -> Option<InTrials> {
+        let tried = |one: &'m PossibleMistake| {
+            let relabelling = &one.relabelling;
+            let compared = self.compared(class, right, relabelling, |line| acts_on(relabelling, line))?;
             Some((one, RARE + one.log_prior - 0.5 * compared.misfit, compared.left))
         };
-        let mut tried: Vec<(&Move, f64, f64)> = moves.iter().filter_map(tried).collect();
+        let mut tried: Vec<(&PossibleMistake, f64, f64)> = mistakes.iter().filter_map(tried).collect();
         tried.sort_by(|a, b| b.1.total_cmp(&a.1));
         let &(best, score, left) = tried.first()?;
-        let before = Change::default();
-        let before = self.compared(class, right, &before, |line| acts_on(&best.change, line))?;
+        let before = Relabelling::default();
+        let before = self.compared(class, right, &before, |line| acts_on(&best.relabelling, line))?;
         // signs of single lines are looked at reading by reading
-        let is_of_a_line = best.effect == &SIGN_MISTAKE && best.change.reading != [[-1.0; 3]; 3];
+        let is_of_a_line = best.effect == &SIGN_MISTAKE && best.relabelling.reading != [[-1.0; 3]; 3];
         if before.left < OFF || left > LEFT || score < ODDS - 0.5 * before.misfit || is_of_a_line {
             return None;
         }
         let place = self.place(class);
         let near = tried.iter().skip(1).take_while(|(_, other, _)| *other > score - NO_WORSE);
-        let rivals = near.map(|(other, ..)| (other.effect, format!("{}, {place}", other.location)));
+        let here = |mistake: &PossibleMistake| mistake.location.clone().rows(&place);
+        let rivals = near.map(|(other, ..)| (other.effect, here(other)));
         let data: Vec<usize> = (0..self.data.len()).filter(|&i| class.contains(&self.trial[i])).collect();
         let most = class.iter().flat_map(|&trial| self.cells[trial].iter().flatten());
-        let location = format!("{}, {place}", best.location);
+        let location = here(best);
         let part = Part {
             effect: best.effect,
             estimates: best.estimates.clone(),
-            observed: format!("In {place}, {}", in_a_part(&best.observed)),
+            observed: format!("In {place}, {}", best.observed_in_some_rows()),
             looks_like: format!("in {place}, {}", best.looks_like),
             explains: most.map(Cell::size).fold(0.0, f64::max),
             rivals: rivals.filter(|(_, at)| *at != location).collect(),
             location,
             data,
         };
-        Some(InTrials { part, change: best.change.clone() })
+        Some(InTrials { part, relabelling: best.relabelling.clone() })
     }
 
     /// `trial 3`, `trials 3 and 4`, `rows 7 to 12`.
     fn place(&self, class: &[usize]) -> String {
         let own: Vec<&Datum> = class
             .iter()
-            .filter_map(|trial| Some(&self.data[self.trial.iter().position(|of| of == trial)?]))
+            .filter_map(|trial| Some(&self.data[self.trial.iter().position(|own| own == trial)?]))
             .collect();
         let names: Option<Vec<String>> = own.iter().map(|datum| trial_name(datum)).collect();
         match names {
@@ -301,8 +311,8 @@ impl<'a> Table<'a> {
                 format!("trials {} and {last}", first.join(", "))
             }
             None => {
-                let is_own = |(datum, of): (&'a Datum, &usize)| class.contains(of).then_some(datum);
-                rows_name(self.data.iter().zip(&self.trial).filter_map(is_own))
+                let is_own = |(datum, trial): (&'a Datum, &usize)| class.contains(trial).then_some(datum);
+                rows_of(self.data.iter().zip(&self.trial).filter_map(is_own))
             }
         }
     }
@@ -324,26 +334,15 @@ fn visits(data: &[Datum]) -> Vec<usize> {
     data.iter().map(visit).collect()
 }
 
-/// True where a change makes something else of a line.
-fn acts_on(change: &Change, line: &Line) -> bool {
+/// True where a relabelling makes something else of a line.
+fn acts_on(relabelling: &Relabelling, line: &Line) -> bool {
     let (axis, channel) = (line.axis.index(), line.channel.index());
-    let is_as_it_was = change.load[axis] == 1.0 && change.reading[axis][channel] == 1.0;
-    !is_as_it_was || change.axis[axis] != axis || change.channel[channel] != channel
+    let is_as_it_was = relabelling.load[axis] == 1.0 && relabelling.reading[axis][channel] == 1.0;
+    !is_as_it_was || relabelling.axis[axis] != axis || relabelling.channel[channel] != channel
 }
 
 struct Compared {
     misfit: f64,
     /// Share of the squares of the deflections that is left.
     left: f64,
-}
-
-/// A sentence of a whole file said of some rows: what else the whole column could be named does not
-/// apply.
-fn in_a_part(observed: &str) -> String {
-    let without = match (observed.find(" (or name"), observed.ends_with(')')) {
-        (Some(at), true) => &observed[..at],
-        _ => observed,
-    };
-    let mut letters = without.chars();
-    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }

@@ -1,52 +1,55 @@
 //! What curves run along, and what they have in common.
 
-use crate::diagnosis::rig::datum::Datum;
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Location, Parameter, UNKNOWN, Variable};
 
 /// Columns of a curve.
 pub(super) const MOST_COLUMNS: usize = 6;
-pub(super) const PERCENT: f64 = 0.01;
 /// Size of a curve as a share of the largest reading, or of the deflection.
 pub(super) const SHARE: f64 = 0.05;
 /// The same, as a share of the largest of all readings: a sensor and its holder are a little wrong
 /// even where hardly anything is to be read.
 pub(super) const LEAST_SHIFT: f64 = 0.01;
 
-/// What a curve is a function of: its name in labels, how it is said, the number it is seen along.
+/// What a curve is a function of.
 #[derive(Clone, Copy)]
 pub(super) struct Along {
+    /// In labels.
     pub name: &'static str,
+    /// In sentences.
     pub follows: &'static str,
+    /// The number that it is seen along.
     pub variable: Variable,
+    /// True for what only grows from the first reading to the last, of a run or of all.
+    pub is_recording: bool,
 }
 
-pub(super) const LOAD: Along = Along { name: "load", follows: "follows the load", variable: Variable::Load };
-pub(super) const UNLOADING: Along =
-    Along { name: "unloading", follows: "follows the load while unloading", variable: Variable::Load };
-pub(super) const SIGNED_LOAD: Along =
-    Along { name: "signed load", follows: "follows the signed load", variable: Variable::Load };
-pub(super) const POSITION: Along = Along {
-    name: "position in the run",
-    follows: "follows the position in the run",
-    variable: Variable::Order,
-};
-pub(super) const FALLING: Along = Along {
-    name: "signed load, falling",
-    follows: "follows the signed load while it falls",
-    variable: Variable::SignedLoad,
-};
-pub(super) const ORDER: Along =
-    Along { name: "order", follows: "follows the order of the readings", variable: Variable::Order };
-pub(super) const TIME: Along = Along { name: "time", follows: "follows the time", variable: Variable::Time };
-pub(super) const SINCE_CHANGE: Along = Along {
-    name: "time since the load was changed",
-    follows: "follows the time since the load was changed",
-    variable: Variable::TimeInRun,
-};
+const fn along(name: &'static str, follows: &'static str, variable: Variable) -> Along {
+    Along { name, follows, variable, is_recording: false }
+}
+
+const fn along_the_recording(name: &'static str, follows: &'static str, variable: Variable) -> Along {
+    Along { name, follows, variable, is_recording: true }
+}
+
+pub(super) const LOAD: Along = along("load", "follows the load", Variable::Load);
+pub(super) const UNLOADING: Along = along("unloading", "follows the load while unloading", Variable::Load);
+pub(super) const SIGNED_LOAD: Along = along("signed load", "follows the signed load", Variable::Load);
+pub(super) const FALLING: Along =
+    along("signed load, falling", "follows the signed load while it falls", Variable::SignedLoad);
+pub(super) const SINCE_CHANGE: Along = along(
+    "time since the load was changed",
+    "follows the time since the load was changed",
+    Variable::TimeInRun,
+);
 pub(super) const LOAD_BEFORE: Along =
-    Along { name: "load before", follows: "follows the load that hung before", variable: Variable::Order };
-pub(super) const TEMPERATURE: Along =
-    Along { name: "temperature", follows: "follows the temperature", variable: Variable::Temperature };
+    along("load before", "follows the load that hung before", Variable::Order);
+pub(super) const TEMPERATURE: Along = along("temperature", "follows the temperature", Variable::Temperature);
+pub(super) const POSITION: Along =
+    along_the_recording("position in the run", "follows the position in the run", Variable::Order);
+pub(super) const ORDER: Along =
+    along_the_recording("order", "follows the order of the readings", Variable::Order);
+pub(super) const TIME: Along = along_the_recording("time", "follows the time", Variable::Time);
 
 /// The place of a curve that multiplies all deflections.
 pub(super) const ALL_DEFLECTIONS: &str = "all deflections";

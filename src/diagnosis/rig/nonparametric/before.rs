@@ -10,10 +10,10 @@
 //!
 //! and what remembers otherwise shows C·F·h(F′). Both g and h are curves of no law.
 
-use super::super::datum::Datum;
-use super::super::load_history::{dwell, instants, runs};
 use super::super::numbering::numbered;
 use super::along::Coordinate;
+use crate::diagnosis::rig::mechanics::load_history::{dwell, instants, runs};
+use crate::diagnosis::rig::recording::datum::Datum;
 
 /// Waiting times that differ by less than this factor are the same.
 const SAME_WAIT: f64 = 1.1;
@@ -56,7 +56,8 @@ impl Before {
         (most > SAME_WAIT * least).then(|| wait.iter().map(|t| Some(t.max(least).ln())).collect())
     }
 
-    /// C·(F − F′) of each datum, m: what the rod yields between the reading before and this one.
+    /// C·(F − F′) of each datum, m: how far the rod deflects between the reading before and this
+    /// one.
     pub fn changes(&self, data: &[Datum], deflections: &[f64]) -> Vec<f64> {
         let line = numbered(data.iter().map(Datum::line_key));
         let mut slope = vec![0.0; line.iter().max().map_or(0, |last| last + 1)];
@@ -86,7 +87,7 @@ impl Before {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::rig::datum;
+    use crate::diagnosis::rig::recording::datum;
     use crate::rig::readings::Readings;
 
     #[test]

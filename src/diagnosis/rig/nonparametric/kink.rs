@@ -11,20 +11,19 @@
 
 use std::sync::Arc;
 
-use super::super::action::{Action, Weights};
-use super::super::datum::Datum;
-use super::along::{ALL_DEFLECTIONS, LEAST_SHIFT, LOAD, PERCENT, SHARE, largest_reading, rival};
+use super::along::{ALL_DEFLECTIONS, LEAST_SHIFT, LOAD, SHARE, largest_reading, rival};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
+use crate::diagnosis::rig::mechanics::action::{Action, Weights};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Location, Variable};
 use crate::spatial::Axis;
-use crate::units::UM;
 
 /// Loads at which a slope may change.
 const MOST_KNOTS: usize = 12;
 /// Exponents of a seat: of a line in contact, of Hertz's point, of a rough surface.
 const EXPONENTS: [f64; 3] = [0.9, 2.0 / 3.0, 0.5];
 
-/// All of them. `deflections`: how far the rod yields at each datum by the base model, m.
+/// All of them. `deflections`: how far the rod deflects at each datum by the base model, m.
 pub(super) fn all(data: &[Datum], deflections: &[f64]) -> Vec<Entry> {
     let along = |axis: Axis| (0..data.len()).filter(|&i| data[i].direction.axis == axis).collect::<Vec<_>>();
     let axes: Vec<(String, Vec<usize>)> = Axis::ALL
@@ -51,7 +50,7 @@ enum Way {
 }
 
 impl Way {
-    fn is_of(self, drive: f64) -> bool {
+    fn includes(self, drive: f64) -> bool {
         match self {
             Way::Both => drive != 0.0,
             Way::Along => drive > 0.0,
@@ -59,7 +58,7 @@ impl Way {
         }
     }
 
-    fn words(self) -> &'static str {
+    fn in_sentences(self) -> &'static str {
         match self {
             Way::Both => "",
             Way::Along => " along the axis",
@@ -70,7 +69,7 @@ impl Way {
 
 /// Other slopes of some of the data; together they have the prior of one curve.
 fn kinks(data: &[Datum], deflections: &[f64], place: &str, group: &[usize]) -> Vec<Entry> {
-    let loaded = |way: Way| group.iter().copied().filter(move |&i| way.is_of(data[i].drive()));
+    let loaded = |way: Way| group.iter().copied().filter(move |&i| way.includes(data[i].drive()));
     let is_two_sided = loaded(Way::Along).next().is_some() && loaded(Way::Against).next().is_some();
     let ways = if is_two_sided { vec![Way::Both, Way::Along, Way::Against] } else { vec![Way::Both] };
     let mut found = Vec::new();
@@ -85,17 +84,17 @@ fn kinks(data: &[Datum], deflections: &[f64], place: &str, group: &[usize]) -> V
             if weights.data.is_empty() {
                 continue;
             }
-            let at = said(data, group, knot);
+            let at = with_unit(data, group, knot);
             let readings = if place == ALL_DEFLECTIONS { "all readings alike" } else { place };
             let location = Location::Curve {
-                label: format!("load{} beyond {at}, {place}", way.words()),
+                label: format!("load{} beyond {at}, {place}", way.in_sentences()),
                 follows: match knot {
                     0.0 => format!("is other for loads against the axis ({readings})"),
-                    _ => format!("changes its slope at a load of {at}{} ({readings})", way.words()),
+                    _ => format!("changes its slope at a load of {at}{} ({readings})", way.in_sentences()),
                 },
                 along: Some(if way == Way::Both { Variable::Load } else { Variable::SignedLoad }),
             };
-            let parameter = parameter("percent", PERCENT, 0.0, SHARE, UNBOUNDED);
+            let parameter = parameter("percent", 0.0, SHARE, UNBOUNDED);
             found.push((rival(location, vec![parameter]), vec![Action::Shift(weights)]));
         }
     }
@@ -117,7 +116,7 @@ fn knots(mut levels: Vec<f64>) -> Vec<f64> {
 }
 
 /// A load, or a displacement that is imposed, with its unit.
-fn said(data: &[Datum], group: &[usize], knot: f64) -> String {
+fn with_unit(data: &[Datum], group: &[usize], knot: f64) -> String {
     match group.iter().any(|&i| data[i].imposed.is_some()) {
         true => format!("{:.3} mm", knot * 1e3),
         false => format!("{knot:.2} N"),
@@ -147,7 +146,7 @@ fn seats(data: &[Datum]) -> Vec<Entry> {
             follows: format!("follows about {power} (readings along the load)"),
             along: Some(LOAD.variable),
         };
-        let mut candidate = rival(location, vec![parameter("um", UM, 0.0, size, UNBOUNDED)]);
+        let mut candidate = rival(location, vec![parameter("um", 0.0, size, UNBOUNDED)]);
         candidate.weight = 1.0 / EXPONENTS.len() as f64;
         (candidate, vec![Action::Shift(weights)])
     };
@@ -157,10 +156,10 @@ fn seats(data: &[Datum]) -> Vec<Entry> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::rig::datum;
+    use crate::diagnosis::rig::recording::datum;
     use crate::rig::readings::Readings;
 
-    fn of(text: &str, deflection: impl Fn(&Datum) -> f64) -> Vec<Entry> {
+    fn found(text: &str, deflection: impl Fn(&Datum) -> f64) -> Vec<Entry> {
         let data = datum::all(&Readings::from_text("f", text).unwrap().rows);
         let deflections: Vec<f64> = data.iter().map(deflection).collect();
         all(&data, &deflections)
@@ -175,7 +174,7 @@ mod tests {
 
     #[test]
     fn a_slope_changes_at_each_load_but_the_largest() {
-        let found = of("axis,load_n,dy_um\ny,0,0\ny,5,9\ny,10,18\ny,20,36\n", |d| 2e-6 * d.drive());
+        let found = found("axis,load_n,dy_um\ny,0,0\ny,5,9\ny,10,18\ny,20,36\n", |d| 2e-6 * d.drive());
         let labels: Vec<String> = found.iter().map(|(c, _)| c.location.to_string()).collect();
         assert_eq!(
             labels[..2],
@@ -191,7 +190,7 @@ mod tests {
 
     #[test]
     fn what_is_loose_one_way_is_so_at_every_load() {
-        let found = of("axis,load_n,dy_um\n-y,5,-9\n-y,10,-18\ny,5,9\ny,10,18\n", |d| 2e-6 * d.drive());
+        let found = found("axis,load_n,dy_um\n-y,5,-9\n-y,10,-18\ny,5,9\ny,10,18\n", |d| 2e-6 * d.drive());
         let one_way = found.iter().find(|(c, _)| match &c.location {
             Location::Curve { follows, .. } => {
                 follows == "is other for loads against the axis (all readings alike)"

@@ -1,4 +1,4 @@
-//! A rod that yields more here than there: walls, laminates or glue that vary along it.
+//! A rod that is softer here than there: walls, laminates or glue that vary along it.
 //!
 //! ```text
 //! EI(s), GJ(s) → EI, GJ/(1 + Σ_j a_j·cos(π j s/L))      s the station, L the rod's length
@@ -9,11 +9,11 @@
 
 use std::f64::consts::PI;
 
-use super::super::action::Action;
-use super::super::datum::Datum;
-use super::super::structure::Structure;
-use super::along::{MOST_COLUMNS, PERCENT, rival};
+use super::along::{MOST_COLUMNS, rival};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
+use crate::diagnosis::rig::mechanics::action::Action;
+use crate::diagnosis::rig::mechanics::structure::Structure;
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Location, Variable};
 
 /// By what share the flexibility varies: walls of drawn tubes vary by 10 %.
@@ -35,7 +35,7 @@ pub(super) fn along_the_rod(data: &[Datum], structure: &Structure, place: &[usiz
             (i, parts[place[i]][along] * datum.signed_load())
         };
         let weights = data.iter().enumerate().map(weight).collect();
-        (parameter(&format!("cosine_{j}_percent"), PERCENT, 0.0, VARIES, UNBOUNDED), Action::Shift(weights))
+        (parameter(&format!("cosine_{j}_percent"), 0.0, VARIES, UNBOUNDED), Action::Shift(weights))
     };
     let (parameters, actions) = (0..MOST_COLUMNS).map(of_wave).unzip();
     let location = Location::Curve {

@@ -14,13 +14,12 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use super::super::action::{Action, Weights};
-use super::super::datum::Datum;
 use super::super::numbering::numbered;
 use super::along::{Along, Coordinate, LEAST_SHIFT, SHARE, largest_reading, rival};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
+use crate::diagnosis::rig::mechanics::action::{Action, Weights};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::Location;
-use crate::units::UM;
 
 const MOST_SWINGS: usize = 8;
 /// Periods that are tried for each swing more.
@@ -58,7 +57,7 @@ pub(super) fn all(along: Along, coordinate: &Coordinate, data: &[Datum]) -> Vec<
                 }
             };
             let weights = Weights { data: Arc::clone(own), values: own.iter().map(at).collect() };
-            (parameter("um", UM, 0.0, size(own), UNBOUNDED), Action::Shift(weights))
+            (parameter("um", 0.0, size(own), UNBOUNDED), Action::Shift(weights))
         };
         let waves: [Wave; 2] = [f64::cos, f64::sin];
         let all = own.iter().flat_map(|own| waves.map(|wave| (own, wave)));
@@ -105,7 +104,7 @@ fn starts(coordinate: &Coordinate, data: &[Datum]) -> Coordinate {
 mod tests {
     use super::super::TIME;
     use super::*;
-    use crate::diagnosis::rig::datum;
+    use crate::diagnosis::rig::recording::datum;
     use crate::rig::readings::Readings;
 
     #[test]
@@ -133,10 +132,10 @@ mod tests {
         let coordinate: Coordinate = data.iter().map(|d| d.time.map(|t| t / 390.0)).collect();
         let entries = all(TIME, &coordinate, &data);
         assert_eq!(entries.len(), 30);
-        let label = |of: &Entry| of.0.location.to_string();
+        let label = |entry: &Entry| entry.0.location.to_string();
         let (_, actions) = entries
             .iter()
-            .find(|of| label(of) == "time, 2 swings, all sensors, since the zero of each run")
+            .find(|entry| label(entry) == "time, 2 swings, all sensors, since the zero of each run")
             .unwrap();
         let Action::Shift(weights) = &actions[1] else { panic!("a shift") };
         for (i, weight) in weights.iter() {

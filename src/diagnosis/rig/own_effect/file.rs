@@ -8,24 +8,16 @@ use toml::Spanned;
 
 use super::OwnEffect;
 use crate::diagnosis::rig::effects::registry;
+use crate::diagnosis::rig::laws::measures::SiteVariable;
 use crate::error::{Place, Result};
 use crate::expression::{Expression, is_reserved};
 use crate::files;
-use crate::inference::{Effect, Kind, Parameter, Reported, UNKNOWN, Variable, WrittenTo};
+use crate::inference::{Effect, Kind, Location, Parameter, Reported, UNKNOWN, Variable, WrittenTo};
 use crate::limits;
 use crate::rod::law::SIDE;
-use crate::rod::{LawMemory, LawVariable};
+use crate::rod::{LawMemory, LawVariable, RodLawPlace};
 use crate::toml_text::{Number, Required, TomlText};
-
-/// Variables of a recording that no rod has: name of the file, symbol, name of the site.
-const OF_RECORDING: [(&str, &str, &str); 2] =
-    [("time_s", "t", "time"), ("temperature_k", "T", "temperature above the lowest")];
-
-/// Variables of a file, by what the sites call them: name of the file, symbol, name of the site.
-fn variables() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
-    let of_rod = |variable: LawVariable| (variable.key(), variable.symbol(), variable.words());
-    LawVariable::ALL.into_iter().map(of_rod).chain(OF_RECORDING)
-}
+use crate::units::Unit;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -136,10 +128,12 @@ fn of_raw(toml: TomlText, text: &str, raw: &RawEffect) -> Result<OwnEffect> {
     if words.is_empty() || words.len() > limits::WORDS_BYTES || words.contains(char::is_control) {
         return Err(toml.is("words", &raw.words, "some words on one line"));
     }
-    let Some((_, symbol, variable)) = variables().find(|(key, ..)| key == raw.variable.get_ref()) else {
-        let keys: Vec<&str> = variables().map(|(key, ..)| key).collect();
+    let is_its = |own: &SiteVariable| own.key() == Some(raw.variable.get_ref().as_str());
+    let Some(variable) = SiteVariable::all_of_files().find(is_its) else {
+        let keys: Vec<&str> = SiteVariable::all_of_files().filter_map(SiteVariable::key).collect();
         return Err(toml.is("variable", &raw.variable, &format!("one of {}", keys.join(", "))));
     };
+    let symbol = variable.measure().symbol;
     let raw_parameters = raw.parameter.get_ref();
     if raw_parameters.is_empty() || raw_parameters.len() > limits::OWN_PARAMETERS {
         let expected = format!("1 to {} parameters", limits::OWN_PARAMETERS);
@@ -158,15 +152,17 @@ fn of_raw(toml: TomlText, text: &str, raw: &RawEffect) -> Result<OwnEffect> {
     }
     let law = Expression::new(raw.law.get_ref(), &names).map_err(|fault| toml.in_formula(&raw.law, fault))?;
     let memory = raw.memory.as_ref().map(|own| memory(toml, own, &parameters)).transpose()?;
-    let seen_along: fn(&crate::inference::Location) -> Vec<Variable> = match symbol {
-        "t" => |_| vec![Variable::Time, Variable::TimeInRun],
-        "T" => |_| vec![Variable::Temperature],
-        _ => |_| vec![Variable::SignedLoad, Variable::Load],
+    let seen_along: fn(&Location) -> Vec<Variable> = match variable {
+        SiteVariable::Time | SiteVariable::OfFile(LawVariable::SinceChange) => {
+            |_| vec![Variable::Time, Variable::TimeInRun]
+        }
+        SiteVariable::Temperature => |_| vec![Variable::Temperature],
+        SiteVariable::OfFile(_) | SiteVariable::Order => |_| vec![Variable::SignedLoad, Variable::Load],
     };
     let at = |value: &Spanned<String>| Place::of_offset(toml.file(), text, value.span().start);
     Ok(OwnEffect {
         effect: kept(name, words, raw.law.get_ref(), raw.variable.get_ref(), seen_along),
-        place: raw.place.get_ref().clone(),
+        place: RodLawPlace::named(raw.place.get_ref()),
         variable,
         law,
         memory,
@@ -182,7 +178,7 @@ fn memory(toml: TomlText, raw: &Spanned<String>, parameters: &[Parameter]) -> Re
     for needed in memory.constants() {
         let own = parameters.iter().find(|own| own.name == needed.name);
         if !own.is_some_and(|own| needed.may_be(own.neutral)) {
-            let expected = format!("with it a parameter whose neutral value is {}", needed.words());
+            let expected = format!("with it a parameter whose neutral value is {}", needed.description());
             return Err(toml.is("memory", raw, &expected));
         }
     }
@@ -206,7 +202,7 @@ fn parameter(toml: TomlText, raw: &RawParameter) -> Result<Parameter> {
     if low >= high {
         return Err(toml.is("size", &raw.size, "`low` below `high`"));
     }
-    Ok(Parameter { name: raw.name.get_ref().clone(), unit: 1.0, neutral, size, bounds: (low, high) })
+    Ok(Parameter { name: raw.name.get_ref().clone(), unit: Unit::NONE, neutral, size, bounds: (low, high) })
 }
 
 /// Records of effects are statics. Those of files are kept for as long as the program runs, each
@@ -216,7 +212,7 @@ fn kept(
     words: &str,
     law: &str,
     variable: &str,
-    seen_along: fn(&crate::inference::Location) -> Vec<Variable>,
+    seen_along: fn(&Location) -> Vec<Variable>,
 ) -> &'static Effect {
     static KEPT: Mutex<Vec<&'static Effect>> = Mutex::new(Vec::new());
     let mut all = KEPT.lock().unwrap_or_else(PoisonError::into_inner);

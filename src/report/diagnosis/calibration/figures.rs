@@ -160,7 +160,7 @@ pub mod tests {
     use crate::calibration::Campaign;
     use crate::calibration::campaign::Targets;
     use crate::calibration::{Mode, Options};
-    use crate::diagnosis::calibration::diagnose;
+    use crate::diagnosis::calibration::diagnose_as_recorded;
 
     /// The demonstration with a displacement of every row, diagnosed.
     pub fn with_diagnosed(
@@ -180,7 +180,7 @@ pub mod tests {
         let mut campaign = Campaign::from_texts("campaign.toml", text, &find).unwrap();
         let Targets::Points(points) = &mut campaign.measurements.targets else { panic!("no points") };
         points.iter_mut().enumerate().for_each(|(row, point)| *point += by(row));
-        let found = diagnose(&campaign, Mode::Fea, &Options::default()).unwrap();
+        let found = diagnose_as_recorded(&campaign, Mode::Fea, &Options::default()).unwrap();
         judge(&campaign, &found);
     }
 }

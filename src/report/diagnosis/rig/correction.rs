@@ -4,7 +4,7 @@
 use serde_json::{Value, json};
 
 use crate::compliance::{Compliance, paper_contact_force};
-use crate::diagnosis::rig::Correction;
+use crate::diagnosis::rig::{Correction, WrittenItem};
 use crate::report::compliance::{matrices, rows};
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};
@@ -18,14 +18,15 @@ pub fn json(correction: &Correction) -> Value {
             "c_rod_um": compliance.index(paper_contact_force()) / UM,
         })
     };
+    let texts = |items: &[WrittenItem]| items.iter().map(WrittenItem::to_string).collect::<Vec<_>>();
     json!({
         "fea": of_compliance(&correction.before),
         "corrected": of_compliance(&correction.after),
         "r_rod": correction.by_ratio.as_ref().map(|(ratio, _)| ratio),
         "r_rod_times_fea": correction.by_ratio.as_ref().map(|(_, compliance)| of_compliance(compliance)),
-        "entered": correction.entered,
-        "removed": correction.removed,
-        "left_out": correction.left_out,
+        "entered": texts(&correction.entered),
+        "removed": texts(&correction.removed),
+        "left_out": texts(&correction.left_out),
     })
 }
 
@@ -36,14 +37,14 @@ pub fn section(correction: &Correction) -> Section {
          follows from these effects and not from one factor r_rod."
             .into(),
     )];
-    let said = [
+    let lists = [
         ("Written into the rod file", &correction.entered),
         ("Removed from the readings", &correction.removed),
         ("Not written, because neither file has a key for it", &correction.left_out),
     ];
-    let points: Vec<String> = said
+    let points: Vec<String> = lists
         .into_iter()
-        .flat_map(|(what, list)| list.iter().map(move |words| format!("{what}: {}", spoken(words))))
+        .flat_map(|(what, items)| items.iter().map(move |item| format!("{what}: {}", item.spoken())))
         .collect();
     if !points.is_empty() {
         blocks.push(Block::List(points));
@@ -51,12 +52,6 @@ pub fn section(correction: &Correction) -> Section {
     blocks.push(Block::Table(table(correction)));
     blocks.push(matrices("corrected", "The corrected rod (FEA with the findings).", &correction.after));
     Section::new("The corrected rod", blocks)
-}
-
-/// `stiffness_scale, rod` with the effect's name as words.
-fn spoken(entry: &str) -> String {
-    let (effect, place) = entry.split_once(", ").unwrap_or((entry, ""));
-    [effect.replace('_', " "), place.to_owned()].join(", ").trim_end_matches(", ").to_owned()
 }
 
 /// The diagonals and c_rod by each way.

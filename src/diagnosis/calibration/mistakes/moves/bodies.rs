@@ -1,9 +1,10 @@
 //! Robots, rods and contact forces that may have been meant instead.
 
 use super::super::super::effects::mistakes::{ROBOT_MISTAKE, ROD_MISTAKE, SIGN_MISTAKE, UNIT_MISTAKE};
-use super::super::draft::Change;
+use super::super::draft::DraftChange;
 use super::{List, Other, UNUSUAL, exact};
 use crate::calibration::campaign::Campaign;
+use crate::inference::Key;
 use crate::units::STANDARD_GRAVITY;
 
 /// A pound, a gram and a thousandth of a newton, N.
@@ -44,7 +45,7 @@ impl List<'_> {
                 let (way, by) = if factor < 1.0 { ("Divide", 1.0 / factor) } else { ("Multiply", factor) };
                 (&UNIT_MISTAKE, format!("{way} {KEY} by {by}"), "its decimal point is in the wrong place")
             };
-            let force = self.add(effect, KEY, Change::Body(body, None), &cure, why);
+            let force = self.add(effect, Key::new(KEY), DraftChange::Body(body, None), &cure, why);
             (force.log_prior, force.force) = (UNUSUAL, Some(factor));
             force.estimates = if factor < 0.0 { Vec::new() } else { exact("factor", factor) };
         }
@@ -53,11 +54,11 @@ impl List<'_> {
     pub fn files(&mut self, others: &[Other]) {
         for other in others {
             let Other { file, name, .. } = other;
-            let change = Change::Body(other.body, other.tip);
+            let change = DraftChange::Body(other.body, other.tip);
             let (effect, what) = if other.is_rod { (&ROD_MISTAKE, "rod") } else { (&ROBOT_MISTAKE, "robot") };
             let cure = format!("Write {what} = \"{file}\"");
             let why = format!("the poses are those of {what} {name}");
-            self.add(effect, file, change, &cure, &why).log_prior = UNUSUAL;
+            self.add(effect, Key::new(file), change, &cure, &why).log_prior = UNUSUAL;
         }
     }
 }

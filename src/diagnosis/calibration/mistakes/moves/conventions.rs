@@ -12,49 +12,52 @@ pub(super) const SAME: (f64, f64) = (1.0 * DEG, 1e-3);
 
 /// How a rotation was given instead of as roll, pitch and yaw.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Said {
+pub(super) struct Convention {
     cure: &'static str,
     pub why: &'static str,
 }
 
-impl Said {
+impl Convention {
     pub fn cure(&self, key: &str) -> String {
         self.cure.replace("{}", key)
     }
 }
 
 /// What three angles (rad) mean in other conventions, as far as that is another rotation.
-pub(super) fn readings(angles: [f64; 3], as_read: &Matrix3<f64>) -> Vec<(Matrix3<f64>, Said)> {
+pub(super) fn readings(angles: [f64; 3], as_read: &Matrix3<f64>) -> Vec<(Matrix3<f64>, Convention)> {
     let [a, b, c] = angles;
     let rpy = |r: f64, p: f64, y: f64| Pose::from_xyz_rpy([0.0; 3], [r, p, y]).rotation;
     let mut all = vec![
-        (rpy(c, b, a), Said { cure: "Turn the order of {} round", why: "it is given as yaw, pitch, roll" }),
+        (
+            rpy(c, b, a),
+            Convention { cure: "Turn the order of {} round", why: "it is given as yaw, pitch, roll" },
+        ),
         (
             rpy(-a, -b, -c).transpose(),
-            Said {
+            Convention {
                 cure: "Convert {} to Rz(yaw)·Ry(pitch)·Rx(roll)",
                 why: "its angles turn about x, y and z in the other order, Rx·Ry·Rz",
             },
         ),
         (
             as_read.transpose(),
-            Said { cure: "Invert the rotation of {}", why: "it is given the other way round" },
+            Convention { cure: "Invert the rotation of {}", why: "it is given the other way round" },
         ),
         (
             exponential(&Vector3::new(a, b, c)),
-            Said { cure: "Convert {} from a rotation vector", why: "it holds a rotation vector" },
+            Convention { cure: "Convert {} from a rotation vector", why: "it holds a rotation vector" },
         ),
     ];
     if angles.iter().all(|angle| angle.abs() / DEG < TURN_IN_RADIANS) {
         let [a, b, c] = angles.map(|angle| angle / DEG);
         let why = "it is in radians, not in degrees";
-        all.push((rpy(a, b, c), Said { cure: "Multiply {} by 180/π", why }));
+        all.push((rpy(a, b, c), Convention { cure: "Multiply {} by 180/π", why }));
     }
-    let mut others: Vec<(Matrix3<f64>, Said)> = Vec::new();
-    for (rotation, said) in all {
+    let mut others: Vec<(Matrix3<f64>, Convention)> = Vec::new();
+    for (rotation, convention) in all {
         let differs = |known: &Matrix3<f64>| turn(known, &rotation) > SAME.0;
         if differs(as_read) && others.iter().all(|(known, _)| differs(known)) {
-            others.push((rotation, said));
+            others.push((rotation, convention));
         }
     }
     others

@@ -3,10 +3,11 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::super::super::effects::mistakes::{FRAME_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
-use super::super::draft::Change;
-use super::conventions::{SAME, Said, is_same, readings};
+use super::super::draft::DraftChange;
+use super::conventions::{Convention, SAME, is_same, readings};
 use super::{List, UNUSUAL, exact};
-use crate::inference::{Effect, Estimate};
+use crate::calibration::campaign::GroupName;
+use crate::inference::{Effect, Estimate, Key};
 use crate::spatial::Pose;
 use crate::units::significant;
 
@@ -16,60 +17,71 @@ const MOST_CLAMPS: usize = 12;
 impl List<'_> {
     /// Clamps or sockets that were named the other way round.
     pub(super) fn exchanged(&mut self) {
-        let names: Vec<String> =
-            self.campaign.measurements.groups.iter().map(|group| group.name.clone()).collect();
+        let names: Vec<&GroupName> =
+            self.campaign.measurements.groups.iter().map(|group| &group.name).collect();
         let count = names.len();
         if count > 1 && count <= MOST_CLAMPS {
             for (a, b) in (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))) {
                 // in the order of the campaign, whichever is met first
                 let (a, b) = if names[a] > names[b] { (b, a) } else { (a, b) };
-                let place = match (names[a].strip_prefix("clamp "), names[b].strip_prefix("clamp ")) {
-                    (Some(a), Some(b)) => format!("clamps {a} and {b}"),
-                    _ => format!("sockets {} and {}", names[a], names[b]),
+                let place = match (names[a], names[b]) {
+                    (GroupName::Clamp(a), GroupName::Clamp(b)) => format!("clamps {a} and {b}"),
+                    (a, b) => format!("sockets {a} and {b}"),
                 };
                 let cure = format!("Exchange {place}");
-                self.add(
-                    &SWAP_MISTAKE,
-                    &place,
-                    Change::Groups(a, b),
-                    &cure,
-                    "each holds the poses of the other",
-                );
+                let why = "each holds the poses of the other";
+                self.add(&SWAP_MISTAKE, Key::new(place), DraftChange::Groups(a, b), &cure, why);
             }
         }
     }
 
     pub(super) fn clamps(&mut self) {
         self.exchanged();
-        let names: Vec<String> =
-            self.campaign.measurements.groups.iter().map(|group| group.name.clone()).collect();
+        let names: Vec<&GroupName> =
+            self.campaign.measurements.groups.iter().map(|group| &group.name).collect();
         let count = names.len();
-        if self.draft.has_sockets() || names.iter().any(String::is_empty) {
+        if self.draft.has_sockets() || names.iter().any(|name| name.is_tracked()) {
             return;
         }
         let devices = self.draft.devices.clone();
-        let readings: Vec<Vec<(Matrix3<f64>, Said)>> =
+        let readings: Vec<Vec<(Matrix3<f64>, Convention)>> =
             devices.iter().map(|device| readings(device.roll_pitch_yaw(), &device.rotation)).collect();
         let of_clamp = |k: usize, rotation: Matrix3<f64>| (k, Pose { rotation, ..devices[k] });
         for k in 0..count {
-            for (rotation, said) in &readings[k] {
-                let change = Change::Devices(vec![of_clamp(k, *rotation)]);
+            for (rotation, convention) in &readings[k] {
+                let change = DraftChange::Devices(vec![of_clamp(k, *rotation)]);
                 let place = format!("{} rpy_deg", names[k]);
-                self.add(&FRAME_MISTAKE, &place, change, &said.cure(&place), said.why).log_prior = UNUSUAL;
+                self.add(
+                    &FRAME_MISTAKE,
+                    Key::new(&place),
+                    change,
+                    &convention.cure(&place),
+                    convention.why,
+                )
+                .log_prior = UNUSUAL;
             }
         }
         if count > 1 {
-            let kinds: Vec<Said> = readings.iter().flatten().map(|(_, said)| *said).collect();
-            for (_, said) in kinds.iter().enumerate().filter(|(k, said)| !kinds[..*k].contains(said)) {
+            let kinds: Vec<Convention> =
+                readings.iter().flatten().map(|(_, convention)| *convention).collect();
+            for (_, convention) in
+                kinds.iter().enumerate().filter(|(k, convention)| !kinds[..*k].contains(convention))
+            {
                 let entry = |k: usize| {
                     let rotation =
-                        readings[k].iter().find(|(_, own)| own == said).map(|(rotation, _)| *rotation);
+                        readings[k].iter().find(|(_, own)| own == convention).map(|(rotation, _)| *rotation);
                     rotation.map(|rotation| of_clamp(k, rotation))
                 };
-                let change = Change::Devices((0..count).filter_map(entry).collect());
-                let place = "clamp rpy_deg (all)";
-                self.add(&FRAME_MISTAKE, place, change, &said.cure("rpy_deg of all clamps"), said.why)
-                    .log_prior = UNUSUAL;
+                let change = DraftChange::Devices((0..count).filter_map(entry).collect());
+                let place = Key::new("clamp rpy_deg (all)");
+                self.add(
+                    &FRAME_MISTAKE,
+                    place,
+                    change,
+                    &convention.cure("rpy_deg of all clamps"),
+                    convention.why,
+                )
+                .log_prior = UNUSUAL;
             }
         }
         for (factor, unit) in
@@ -77,10 +89,10 @@ impl List<'_> {
         {
             let scaled =
                 |(k, device): (usize, &Pose)| (k, Pose { origin: device.origin * factor, ..*device });
-            let change = Change::Devices(devices.iter().enumerate().map(scaled).collect());
+            let change = DraftChange::Devices(devices.iter().enumerate().map(scaled).collect());
             let cure = format!("Multiply xyz_mm of all clamps by {factor}");
             let why = format!("they are in {unit}, not in millimetres");
-            let unit = self.add(&UNIT_MISTAKE, "clamp xyz_mm (all)", change, &cure, &why);
+            let unit = self.add(&UNIT_MISTAKE, Key::new("clamp xyz_mm (all)"), change, &cure, &why);
             (unit.estimates, unit.log_prior) = (exact("factor", factor), UNUSUAL);
         }
     }
@@ -92,13 +104,20 @@ impl List<'_> {
         let inverse = base.inverse();
         if is_other(&inverse) {
             let cure = "Replace [base] by its inverse";
-            self.add(&FRAME_MISTAKE, "base", Change::Base(inverse), cure, "it is {W} in {0}, not {0} in {W}");
+            let why = "it is {W} in {0}, not {0} in {W}";
+            self.add(&FRAME_MISTAKE, Key::new("base"), DraftChange::Base(inverse), cure, why);
         }
-        for (rotation, said) in readings([roll, pitch, yaw], &base.rotation) {
+        for (rotation, convention) in readings([roll, pitch, yaw], &base.rotation) {
             let turned = Pose { rotation, ..base };
             if is_other(&turned) {
-                let cure = said.cure("base.rpy_deg");
-                self.add(&FRAME_MISTAKE, "base.rpy_deg", Change::Base(turned), &cure, said.why);
+                let cure = convention.cure("base.rpy_deg");
+                self.add(
+                    &FRAME_MISTAKE,
+                    Key::new("base.rpy_deg"),
+                    DraftChange::Base(turned),
+                    &cure,
+                    convention.why,
+                );
             }
         }
         for (factor, unit) in [(1e3, "metres"), (25.4, "inches"), (1e-3, "micrometres")] {
@@ -106,7 +125,8 @@ impl List<'_> {
             if is_other(&scaled) {
                 let cure = format!("Multiply base.xyz_mm by {}", significant(factor, 4));
                 let why = format!("it is in {unit}, not in millimetres");
-                self.add(&UNIT_MISTAKE, "base.xyz_mm", Change::Base(scaled), &cure, &why).estimates =
+                let place = Key::new("base.xyz_mm");
+                self.add(&UNIT_MISTAKE, place, DraftChange::Base(scaled), &cure, &why).estimates =
                     exact("factor", factor);
             }
         }
@@ -126,7 +146,7 @@ impl List<'_> {
                 return;
             }
             known.push(tip);
-            self.add(effect, key, Change::Tool(tip), &cure, why).estimates = estimates;
+            self.add(effect, Key::new(key), DraftChange::Tool(tip), &cure, why).estimates = estimates;
         };
         let letters = ["x", "y", "z"];
         for order in [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]] {

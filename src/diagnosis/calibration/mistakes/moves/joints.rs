@@ -3,9 +3,10 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::super::super::effects::mistakes::{OFFSET_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
-use super::super::draft::Change;
+use super::super::draft::DraftChange;
 use super::conventions::TURN_IN_RADIANS;
 use super::{List, RARE, UNUSUAL, exact};
+use crate::inference::Key;
 use crate::robot::Motion;
 use crate::units::DEG;
 
@@ -21,14 +22,20 @@ impl List<'_> {
         };
         for j in 0..count {
             let name = self.column(j);
-            let change = Change::factors(&[j], count, -1.0);
-            self.add(&SIGN_MISTAKE, &name, change, &format!("Multiply {name} by −1"), "its sign is wrong");
-        }
-        if count > 1 {
-            let change = Change::factors(&all, count, -1.0);
+            let change = DraftChange::factors(&[j], count, -1.0);
             self.add(
                 &SIGN_MISTAKE,
-                &every,
+                Key::new(&name),
+                change,
+                &format!("Multiply {name} by −1"),
+                "its sign is wrong",
+            );
+        }
+        if count > 1 {
+            let change = DraftChange::factors(&all, count, -1.0);
+            self.add(
+                &SIGN_MISTAKE,
+                Key::new(&every),
                 change,
                 &format!("Multiply {every} by −1"),
                 "their signs are wrong",
@@ -39,19 +46,24 @@ impl List<'_> {
             let name = self.column(j);
             for quarter in [1.0, -1.0, 2.0] {
                 let degrees = 90.0 * quarter;
-                let said = if degrees > 0.0 {
+                let operation = if degrees > 0.0 {
                     format!("Add {degrees}° to")
                 } else {
                     format!("Subtract {}° from", -degrees)
                 };
-                let change = Change::offset(j, count, 1.0, FRAC_PI_2 * quarter);
+                let change = DraftChange::offset(j, count, 1.0, FRAC_PI_2 * quarter);
                 let why = format!("the joint's zero is off by {}°", degrees.abs());
-                self.add(&OFFSET_MISTAKE, &name, change, &format!("{said} {name}"), &why).estimates =
-                    exact("deg", degrees);
-                let change = Change::offset(j, count, -1.0, FRAC_PI_2 * quarter);
+                self.add(&OFFSET_MISTAKE, Key::new(&name), change, &format!("{operation} {name}"), &why)
+                    .estimates = exact("deg", degrees);
+                let change = DraftChange::offset(j, count, -1.0, FRAC_PI_2 * quarter);
                 let cure = format!("Replace {name} by {degrees}° − {name}");
-                let mirrored =
-                    self.add(&OFFSET_MISTAKE, &name, change, &cure, "its sign and its zero are wrong");
+                let mirrored = self.add(
+                    &OFFSET_MISTAKE,
+                    Key::new(&name),
+                    change,
+                    &cure,
+                    "its sign and its zero are wrong",
+                );
                 mirrored.estimates = exact("deg", degrees);
                 mirrored.log_prior = RARE;
             }
@@ -73,7 +85,13 @@ impl List<'_> {
             let (first, second) = (self.column(a), self.column(b));
             let place = format!("{first} and {second}");
             let cure = format!("Exchange the columns {first} and {second}");
-            self.add(&SWAP_MISTAKE, &place, Change::order(order), &cure, "each holds the other joint");
+            self.add(
+                &SWAP_MISTAKE,
+                Key::new(place),
+                DraftChange::order(order),
+                &cure,
+                "each holds the other joint",
+            );
         }
         if count < 3
             || (1..count)
@@ -83,7 +101,8 @@ impl List<'_> {
         }
         let every = format!("{} … {}", self.column(0), self.column(count - 1));
         let mut add = |order: Vec<usize>, cure: &str, why: &str| {
-            self.add(&SWAP_MISTAKE, &every, Change::order(order), cure, why).log_prior = UNUSUAL;
+            self.add(&SWAP_MISTAKE, Key::new(&every), DraftChange::order(order), cure, why).log_prior =
+                UNUSUAL;
         };
         let cure = "Turn the order of the joint columns round";
         add((0..count).rev().collect(), cure, "they run from the flange to the base");
@@ -117,18 +136,28 @@ impl List<'_> {
         for (joints, name, log_prior) in all {
             let it = if joints.len() > 1 { "they are" } else { "it is" };
             if are_small(&joints) {
-                let change = Change::factors(&joints, count, 180.0 / PI);
+                let change = DraftChange::factors(&joints, count, 180.0 / PI);
                 let why = format!("{it} in radians, not in degrees");
-                let radians =
-                    self.add(&UNIT_MISTAKE, &name, change, &format!("Multiply {name} by 180/π"), &why);
+                let radians = self.add(
+                    &UNIT_MISTAKE,
+                    Key::new(&name),
+                    change,
+                    &format!("Multiply {name} by 180/π"),
+                    &why,
+                );
                 radians.estimates = exact("factor", 180.0 / PI);
                 radians.log_prior = log_prior;
             }
             if are_huge(&joints) {
-                let change = Change::factors(&joints, count, PI / 180.0);
+                let change = DraftChange::factors(&joints, count, PI / 180.0);
                 let why = format!("{it} degrees that were converted to degrees once more");
-                let twice =
-                    self.add(&UNIT_MISTAKE, &name, change, &format!("Multiply {name} by π/180"), &why);
+                let twice = self.add(
+                    &UNIT_MISTAKE,
+                    Key::new(&name),
+                    change,
+                    &format!("Multiply {name} by π/180"),
+                    &why,
+                );
                 twice.estimates = exact("factor", PI / 180.0);
                 twice.log_prior = log_prior + UNUSUAL;
             }

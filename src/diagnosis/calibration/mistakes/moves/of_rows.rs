@@ -3,11 +3,11 @@
 use nalgebra::Matrix3;
 
 use super::super::super::effects::mistakes::{OFFSET_MISTAKE, ROW_MISTAKE, UNIT_MISTAKE};
-use super::super::draft::{Cell, Change, Draft};
+use super::super::draft::{Cell, Draft, DraftChange};
 use super::super::names::AXES;
-use super::{List, Move, UNUSUAL, exact};
+use super::{List, PossibleMistake, UNUSUAL, exact};
 use crate::calibration::campaign::Campaign;
-use crate::inference::Estimate;
+use crate::inference::{Estimate, Key};
 use crate::robot::{Motion, Robot};
 use crate::units::{DEG, MM, significant};
 
@@ -18,7 +18,7 @@ const ANY_ANGLE: f64 = -6.0;
 
 /// All that may have gone wrong with some rows alone: what the others show decides, not how large
 /// the numbers are.
-pub fn of_rows(campaign: &Campaign, draft: &Draft) -> Vec<Move> {
+pub fn of_rows(campaign: &Campaign, draft: &Draft) -> Vec<PossibleMistake> {
     let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: true };
     list.joints();
     list.positions();
@@ -38,12 +38,12 @@ impl List<'_> {
         if !self.draft.has_sockets() {
             cells.extend(AXES.into_iter().enumerate().map(|(axis, name)| (Cell::Axis(axis), name.into())));
         }
-        for (of, name) in cells {
+        for (cell, name) in cells {
             for (by, way, there) in [(1, "up", "above"), (-1, "down", "below")] {
                 let cure = format!("Move {name} 1 row {way}");
                 let why = format!("each number belongs to the row {there}");
-                let change = Change::Column { of, by };
-                let shift = self.add(&ROW_MISTAKE, &name, change, &cure, &why);
+                let change = DraftChange::Column { cell, by };
+                let shift = self.add(&ROW_MISTAKE, Key::new(&name), change, &cure, &why);
                 (shift.estimates, shift.log_prior) = (exact("rows", by as f64), UNUSUAL);
             }
         }
@@ -55,9 +55,9 @@ impl List<'_> {
         let count = self.draft.joint_count;
         for joint in 0..count.saturating_sub(1) {
             let name = self.column(joint);
-            let change = Change::Zero { joint, by: 0.0 };
-            self.add(&OFFSET_MISTAKE, &name, change, "", "the joint's zero is another one there").log_prior =
-                ANY_ANGLE;
+            let change = DraftChange::Zero { joint, by: 0.0 };
+            self.add(&OFFSET_MISTAKE, Key::new(&name), change, "", "the joint's zero is another one there")
+                .log_prior = ANY_ANGLE;
         }
     }
 
@@ -76,16 +76,16 @@ impl List<'_> {
                     format!("Multiply {name} by {factor}")
                 };
                 let why = format!("it is in {unit}, not in millimetres");
-                let unit = self.add(&UNIT_MISTAKE, name, Change::Seen(matrix), &by, &why);
+                let unit = self.add(&UNIT_MISTAKE, Key::new(name), DraftChange::Seen(matrix), &by, &why);
                 (unit.estimates, unit.log_prior) = (exact("factor", factor), UNUSUAL);
             }
         }
     }
 }
 
-impl Move {
+impl PossibleMistake {
     /// What to do where a joint's zero was found to be another one.
-    pub fn say_zero(&mut self, robot: &Robot, joint: usize, by: f64, error: f64) {
+    pub fn describe_zero(&mut self, robot: &Robot, joint: usize, by: f64, error: f64) {
         let (unit, symbol, name) = match robot.joints[joint].motion {
             Motion::Revolute => (DEG, "°", "deg"),
             Motion::Prismatic => (MM, " mm", "mm"),
@@ -97,7 +97,6 @@ impl Move {
             true => format!("Add {size}{symbol} to {}", self.location),
             false => format!("Subtract {size}{symbol} from {}", self.location),
         };
-        self.estimates =
-            vec![Estimate { name: name.into(), unit: 1.0, value, low: value - half, high: value + half }];
+        self.estimates = vec![Estimate::as_written(name, value, value - half, value + half)];
     }
 }

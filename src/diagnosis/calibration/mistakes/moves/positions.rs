@@ -3,9 +3,10 @@
 use nalgebra::Matrix3;
 
 use super::super::super::effects::mistakes::{ROW_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
-use super::super::draft::Change;
+use super::super::draft::DraftChange;
 use super::super::names::AXES;
 use super::{List, RARE, UNUSUAL, exact};
+use crate::inference::Key;
 use crate::statistics::median;
 use crate::units::MM;
 
@@ -22,7 +23,7 @@ impl List<'_> {
         }
         const ALL: &str = "x_mm, y_mm, z_mm";
         // in clamps smaller numbers are nearer to any robot that was sent there
-        let is_clamped = self.campaign.measurements.groups.iter().any(|group| !group.name.is_empty());
+        let is_clamped = self.campaign.measurements.groups.iter().any(|group| !group.name.is_tracked());
         let sizes: Vec<f64> = self.draft.seen.iter().map(|seen| seen.norm()).collect();
         let is_far = !is_clamped || median(&sizes).is_some_and(|size| size > DISPLACEMENT);
         for (factor, unit, log_prior) in [
@@ -40,9 +41,14 @@ impl List<'_> {
             } else {
                 format!("Multiply {ALL} by {factor}")
             };
-            let change = Change::Seen(Matrix3::identity() * factor);
-            let unit =
-                self.add(&UNIT_MISTAKE, ALL, change, &by, &format!("they are in {unit}, not in millimetres"));
+            let change = DraftChange::Seen(Matrix3::identity() * factor);
+            let unit = self.add(
+                &UNIT_MISTAKE,
+                Key::new(ALL),
+                change,
+                &by,
+                &format!("they are in {unit}, not in millimetres"),
+            );
             (unit.estimates, unit.log_prior) = (exact("factor", factor), log_prior);
         }
         let names = AXES;
@@ -88,7 +94,8 @@ impl List<'_> {
                         )
                     }
                 };
-                self.add(effect, &place, Change::Seen(matrix), &cure, why).log_prior = log_prior;
+                self.add(effect, Key::new(place), DraftChange::Seen(matrix), &cure, why).log_prior =
+                    log_prior;
             }
         }
     }
@@ -108,9 +115,9 @@ impl List<'_> {
                     "each position belongs to the angles {count} {rows} {}",
                     if by > 0 { "above" } else { "below" }
                 );
-                let change = Change::Rows { by, with_clamps };
+                let change = DraftChange::Rows { by, with_clamps };
                 let place = if with_clamps { "clamp, x_mm, y_mm, z_mm" } else { "x_mm, y_mm, z_mm" };
-                let shift = self.add(&ROW_MISTAKE, place, change, &cure, &why);
+                let shift = self.add(&ROW_MISTAKE, Key::new(place), change, &cure, &why);
                 shift.estimates = exact("rows", by as f64);
                 shift.log_prior =
                     if count == 1 { 0.0 } else { UNUSUAL } + if with_clamps { UNUSUAL } else { 0.0 };

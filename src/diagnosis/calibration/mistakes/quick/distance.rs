@@ -3,7 +3,12 @@
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::super::draft::Draft;
-use super::{Body, Fit, State, load, prior_precision, sizes, tips, weight_of, without_means};
+use super::Fit;
+use super::density::weight_of;
+use super::loaded_robot::LoadedRobot;
+use super::means::without_means;
+use super::priors::{prior_precision, sizes};
+use super::residuals::{FitState, load, tips};
 use crate::calibration::growth::growth;
 use crate::linalg::transposed_product;
 
@@ -18,8 +23,8 @@ impl Fit {
     /// N⁻¹·∂(Σ ½·ln|JᵢJᵢᵀ|)/∂ρ from that of the fit ([`growth`]).
     ///
     /// `None` where a group has no rows, or nothing can be computed.
-    pub fn distance(&self, draft: &Draft, body: &Body, between: [usize; 2]) -> Option<(f64, f64)> {
-        let state = State { setup: self.setup(body), bases: self.bases.clone() };
+    pub fn distance(&self, draft: &Draft, body: &LoadedRobot, between: [usize; 2]) -> Option<(f64, f64)> {
+        let state = FitState { setup: self.setup(body), bases: self.bases.clone() };
         let mut torque = vec![0.0; draft.joints.len()];
         let mut deflection = vec![Vector3::zeros(); draft.len()];
         load(draft, body, &state, &mut torque, &mut deflection);

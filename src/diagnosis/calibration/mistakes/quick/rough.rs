@@ -94,8 +94,9 @@ pub fn placed(
 ) -> Option<Pose> {
     let rows: Vec<usize> = (0..tips.len()).filter(|&row| is_of(row)).collect();
     let total: f64 = rows.iter().map(|&row| weight[row]).sum::<f64>().max(f64::MIN_POSITIVE);
-    let mean =
-        |of: &[Vector3<f64>]| rows.iter().map(|&row| of[row] * weight[row]).sum::<Vector3<f64>>() / total;
+    let mean = |points: &[Vector3<f64>]| {
+        rows.iter().map(|&row| points[row] * weight[row]).sum::<Vector3<f64>>() / total
+    };
     let (centre, goal) = (mean(tips), mean(points));
     let spread: Matrix3<f64> =
         rows.iter().map(|&row| (points[row] - goal) * (tips[row] - centre).transpose() * weight[row]).sum();

@@ -11,8 +11,8 @@ fn in_rows(campaign: &Campaign, rows: std::ops::Range<usize>, change: impl Fn(&m
 /// The one finding, its cure, and the campaign that was meant.
 fn only(campaign: &Campaign) -> (&'static str, String, Campaign) {
     let mended = mended(campaign);
-    let said: Vec<&str> = mended.found.iter().map(|finding| finding.description.observed.as_str()).collect();
-    let [finding] = &mended.found[..] else { panic!("{said:?}") };
+    let cures: Vec<&str> = mended.found.iter().map(|finding| finding.description.observed.as_str()).collect();
+    let [finding] = &mended.found[..] else { panic!("{cures:?}") };
     assert!(mended.is_changed && mended.suspicions[0].spoils_fit);
     (finding.effect.name, finding.description.observed.clone(), mended.campaign)
 }
@@ -125,7 +125,8 @@ fn what_counts_little_is_not_explained() {
     wrong.measurements = wrong.measurements.subset(&rows);
     points(&mut wrong)[3] += Vector3::new(0.5, 0.2, 0.1);
     points(&mut wrong)[4] += Vector3::new(-0.3, 0.2, 0.4);
-    let found = crate::diagnosis::calibration::diagnose(&wrong, Mode::Fea, &Options::default()).unwrap();
+    let found =
+        crate::diagnosis::calibration::diagnose_as_recorded(&wrong, Mode::Fea, &Options::default()).unwrap();
     assert!(found.is_implausible());
     assert!(found.diagnosis.discrepancy.is_some());
 }

@@ -15,7 +15,7 @@ pub fn all(found: &CalibrationDiagnosis) -> Vec<Event> {
         .into_iter()
         .map(|happened| Event {
             at: place(happened.row) - if happened.stays { 0.5 } else { 0.0 },
-            text: happened.words,
+            text: happened.label,
         })
         .collect();
     events.sort_by(|a, b| a.at.total_cmp(&b.at));

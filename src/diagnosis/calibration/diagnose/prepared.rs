@@ -1,0 +1,90 @@
+//! A calibration as the engine gets it: the model with all its effects, and the evidence.
+
+use super::super::effects::registry;
+use super::super::evidence;
+use super::super::model::torque_uncertainty::TorqueUncertainty;
+use super::super::model::{CalibrationModel, Context, LinearTerms};
+use super::super::nonparametric;
+use crate::calibration::campaign::Campaign;
+use crate::calibration::{Calibration, Noise};
+use crate::error::Result;
+use crate::inference::{Absorbed, Evidence, NotTestable};
+
+/// A calibration as it is given to the engine.
+pub struct Prepared<'c> {
+    /// The calibration about which effects are linear.
+    pub about: Calibration<'c>,
+    pub model: CalibrationModel<'c>,
+    pub evidence: Evidence,
+    /// Effects that the calibration hides.
+    pub absorbed: Vec<Absorbed>,
+    /// Effects that the campaign's files have no data for.
+    pub not_testable: Vec<NotTestable>,
+    pub context: Context<'c>,
+}
+
+/// What a first look at the residuals has shown.
+#[derive(Default)]
+pub struct FirstLook {
+    /// How groups scatter, where they do so unequally.
+    pub scatter: Option<Noise>,
+    /// What each row counts, where tails are heavy.
+    pub weights: Option<Vec<f64>>,
+    /// Rows, from 0, after which something has moved.
+    pub moved_after: Vec<usize>,
+}
+
+impl<'c> Prepared<'c> {
+    /// Data are rows × (x, y, z), in {W}, then what is known besides; see `evidence.rs`.
+    pub fn new(campaign: &'c Campaign, calibration: Calibration<'c>) -> Result<Prepared<'c>> {
+        Prepared::about(campaign, calibration.clone(), calibration, &FirstLook::default())
+    }
+
+    /// The same of effects that are linear about another robot, after a first look.
+    pub fn about(
+        campaign: &'c Campaign,
+        calibration: Calibration<'c>,
+        about: Calibration<'c>,
+        look: &FirstLook,
+    ) -> Result<Prepared<'c>> {
+        let context = Context::new(campaign, &about)?;
+        let context = match &look.scatter {
+            Some(noise) => context.scattered(&noise.of_group),
+            None => context,
+        };
+        let context = match &look.weights {
+            Some(weights) => context.weighted(weights),
+            None => context,
+        };
+        let context = context.moved_after(&look.moved_after);
+        let evidence = evidence::evidence_of(campaign, &about, &context);
+        let (mut entries, not_testable) = registry::candidates(&context);
+        entries.extend(nonparametric::all(&context));
+        let (terms, absorbed) = LinearTerms::new(entries, &evidence);
+        let jacobians = context.configurations.iter().map(|there| there.tip_jacobian.clone());
+        let model = CalibrationModel {
+            campaign,
+            calibration,
+            tip_jacobians: jacobians.collect(),
+            recorded: None,
+            scale: context.scale.clone(),
+            torque_uncertainty: TorqueUncertainty::new(campaign, &context),
+            terms,
+        };
+        Ok(Prepared { about, model, evidence, absorbed, not_testable, context })
+    }
+}
+
+impl<'c> CalibrationModel<'c> {
+    /// The model of a finished calibration, with what it leaves as numbers.
+    ///
+    /// # Errors
+    /// As [`crate::calibration::Compensation::new`].
+    pub fn new(
+        campaign: &'c Campaign,
+        calibration: Calibration<'c>,
+    ) -> Result<(CalibrationModel<'c>, Evidence)> {
+        let prepared = Prepared::new(campaign, calibration)?;
+        Ok((prepared.model, prepared.evidence))
+    }
+}

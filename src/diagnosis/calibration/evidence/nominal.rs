@@ -1,0 +1,145 @@
+//! The numbers of the files that a calibration does not fit, each known to its standard
+//! uncertainty: what they explain within that is no mismatch.
+//!
+//! ```text
+//! mass of link k      Σ_{j≤k} Jⱼ·cⱼ·zⱼ·((p_k − oⱼ) × g)·u       u a share of its mass
+//! its centre          Σ_{j≤k} Jⱼ·cⱼ·zⱼ·(e × g)·m_k·u            e an axis of the link, u a share of its distance
+//! a number of the rod R·(∂C^F·F + ∂C^g·g)·u                     by the rod file's standard uncertainties
+//! place of a clamp    −e·u                                      where the campaign states u
+//! ```
+
+use nalgebra::{DMatrix, Vector3};
+
+use super::super::model::entry::Column;
+use super::super::model::{Configuration, Context};
+use crate::beam::Physics;
+use crate::calibration::Mode;
+use crate::calibration::campaign::Campaign;
+use crate::compliance::{Compliance, DEFAULT_ELEMENTS, closed_form};
+use crate::inference::{Evidence, NominalParameter, Whitening};
+use crate::robot::Body;
+use crate::rod::{Nominal, Rod};
+use crate::spatial::Axis;
+use crate::units::{MM, STANDARD_GRAVITY};
+
+/// Part of a noise below which the length of a column says nothing: such a number is left out.
+const UNFELT: f64 = 0.5;
+/// Least distance from its joint's frame that the share of a centre's uncertainty is of, m.
+const LEAST_DISTANCE: f64 = 20.0 * MM;
+
+/// Adds the numbers that the recording feels to an evidence.
+pub fn with_numbers(evidence: Evidence, campaign: &Campaign, mode: Mode, context: &Context) -> Evidence {
+    let mut numbers = of_links(campaign, context);
+    numbers.extend(of_rod(campaign, mode, context));
+    numbers.extend(of_clamps(campaign, context));
+    if numbers.is_empty() {
+        return evidence;
+    }
+    let mut columns = DMatrix::zeros(evidence.residual.len(), numbers.len());
+    for (k, (number, column)) in numbers.iter().enumerate() {
+        let mut slots = columns.view_mut((column.first, k), (column.values.len(), 1));
+        slots.copy_from_slice(&column.values);
+        slots *= number.standard_uncertainty;
+    }
+    let left = Whitening::new(&evidence, &evidence.residual).apply_columns(&columns);
+    let is_felt = |k: &usize| left.column(*k).norm() > UNFELT * context.noise;
+    let felt: Vec<usize> = (0..numbers.len()).filter(is_felt).collect();
+    Evidence {
+        nominal_numbers: felt.iter().map(|&k| numbers[k].0.clone()).collect(),
+        nominal: columns.select_columns(&felt),
+        ..evidence
+    }
+}
+
+fn of_links(campaign: &Campaign, context: &Context) -> Vec<(NominalParameter, Column)> {
+    let robot = &campaign.robot;
+    let share = robot.standard_uncertainty.mass;
+    let bodies = robot.joints.iter().enumerate().filter_map(|(k, joint)| Some((k, joint.body?)));
+    let of_link = |(k, body): (usize, Body)| {
+        let pulled = |there: &Configuration| {
+            let centre = there.link[k].point(&body.centre);
+            there.joint_deflection_below(k, |j| centre - there.origin[j], &there.gravity)
+        };
+        let mass = NominalParameter {
+            name: format!("mass of link {}", k + 1),
+            unit: "kg",
+            si: 1.0,
+            value: body.mass,
+            standard_uncertainty: share * body.mass,
+        };
+        let distance = body.centre.norm().max(LEAST_DISTANCE);
+        let mut numbers = vec![(mass, context.column(|_, there| pulled(there)))];
+        numbers.extend(Axis::ALL.map(|axis| {
+            let centre = NominalParameter {
+                name: format!("centre of link {} along {axis}", k + 1),
+                unit: "mm",
+                si: MM,
+                value: body.centre[axis.index()],
+                standard_uncertainty: share * distance,
+            };
+            let column = context.column(|_, there| {
+                let along: Vector3<f64> = there.link[k].rotation.column(axis.index()).into();
+                there.joint_deflection_below(k, |_| along, &(there.gravity * body.mass))
+            });
+            (centre, column)
+        }));
+        numbers
+    };
+    let known = bodies.filter(|(_, body)| share > 0.0 && body.mass > 0.0);
+    known.flat_map(of_link).collect()
+}
+
+/// Of a rod whose deflection is computed; one that was measured is known by its readings.
+fn of_rod(campaign: &Campaign, mode: Mode, context: &Context) -> Vec<(NominalParameter, Column)> {
+    let model = |rod: &Rod| match mode {
+        Mode::Calc => closed_form::compliance(rod).ok(),
+        Mode::Fea => Compliance::of_model(rod, &Physics::default(), DEFAULT_ELEMENTS).ok(),
+        Mode::None | Mode::Meas => None,
+    };
+    let Some((rod, nominal)) = campaign.rod.as_ref().and_then(|rod| Some((rod, model(rod)?))) else {
+        return Vec::new();
+    };
+    let force = campaign.contact_force.unwrap_or_default();
+    let of_number = |known: Nominal| {
+        let other = model(&rod.with(&known.number, known.value + known.standard_uncertainty))?;
+        let by_force = (other.force - nominal.force) / known.standard_uncertainty;
+        let by_weight = (other.gravity - nominal.gravity) / known.standard_uncertainty / STANDARD_GRAVITY;
+        let column = context.column(|row, there| {
+            let force = context.recording.device(row).rotation * force;
+            there.in_world(&by_force) * force + there.in_world(&by_weight) * there.gravity
+        });
+        let (unit, si, value) = known.for_people();
+        let number = NominalParameter {
+            name: known.number.to_string(),
+            unit,
+            si,
+            value,
+            standard_uncertainty: known.standard_uncertainty,
+        };
+        Some((number, column))
+    };
+    rod.nominal_numbers().into_iter().filter_map(of_number).collect()
+}
+
+fn of_clamps(campaign: &Campaign, context: &Context) -> Vec<(NominalParameter, Column)> {
+    let Some(sd) = campaign.clamp_uncertainty.filter(|sd| *sd > 0.0 && !context.has_sockets()) else {
+        return Vec::new();
+    };
+    let groups = &context.recording.groups;
+    let places = (0..groups.len()).flat_map(|group| Axis::ALL.map(|axis| (group, axis)));
+    let of_place = |(group, axis): (usize, Axis)| {
+        let number = NominalParameter {
+            name: format!("{axis} of {}", groups[group].name),
+            unit: "mm",
+            si: MM,
+            value: groups[group].device.origin[axis.index()],
+            standard_uncertainty: sd,
+        };
+        let column = context.column(|row, _| match context.recording.rows[row].group == group {
+            true => -Vector3::ith(axis.index(), 1.0),
+            false => Vector3::zeros(),
+        });
+        (number, column)
+    };
+    places.map(of_place).collect()
+}

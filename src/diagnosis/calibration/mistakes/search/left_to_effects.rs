@@ -1,0 +1,94 @@
+//! Physics that acts on what a mistake acts on too: a mistake must be far more probable.
+
+use nalgebra::Vector3;
+
+use super::super::draft::{DraftChange, Rows};
+use super::super::quick::{Worthwhile, density, fit, t_scale};
+use super::{FittedDraft, MistakeSearch, SearchStep};
+use crate::statistics::median;
+
+/// The price of a clamp that is not quite in its place: the same for its three numbers.
+const DISPLACED: f64 = -7.5;
+/// The price of a tip that is elsewhere from some row on: three numbers and the row.
+const SLIPPED: f64 = -12.0;
+/// The price of a contact force of another size, and the sizes that are tried beside one that a
+/// unit says.
+const FORCE: (f64, [f64; 2]) = (-3.0, [0.5, 2.0]);
+
+impl MistakeSearch<'_> {
+    /// The best score of physics that acts on what the last change of `changed` acts on: small
+    /// moves, places of clamps where their frames are changed, a tip that slipped where positions
+    /// are changed in some rows, another contact force.
+    pub fn of_effects(&self, changed: &FittedDraft, from: &FittedDraft, tried: &[FittedDraft]) -> f64 {
+        let small = tried.iter().filter(|state| !self.is_far(state)).map(|state| state.score);
+        let others = [self.slipped(changed, from), self.another_force(changed, from)];
+        let displaced = self.displaced(changed, from).into_iter();
+        small.chain(displaced).chain(others.into_iter().flatten()).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Clamps that are not quite in their places.
+    fn displaced(&self, changed: &FittedDraft, from: &FittedDraft) -> Vec<f64> {
+        let turned: Vec<Vec<usize>> = match changed.steps.last().map(|step| self.change(step)) {
+            Some(DraftChange::Devices(frames)) => vec![
+                (frames.iter())
+                    .filter(|(clamp, frame)| frame.origin == from.thin.devices[*clamp].origin)
+                    .map(|(clamp, _)| *clamp)
+                    .collect(),
+            ],
+            Some(DraftChange::Moved(_)) if self.draft.devices.len() > 1 => {
+                (0..self.draft.devices.len()).map(|clamp| vec![clamp]).collect()
+            }
+            _ => Vec::new(),
+        };
+        let displaced = turned.into_iter().filter(|turned| !turned.is_empty()).filter_map(|turned| {
+            let mut thin = from.thin.clone();
+            thin.loose = turned;
+            let price = DISPLACED * thin.loose.len() as f64;
+            let fit = fit(&thin, &self.bodies[thin.body], Worthwhile::ANY)?;
+            let loose = self.restarted(self.scored(from.steps.clone(), thin, fit), changed);
+            Some(loose.score + price)
+        });
+        displaced.collect()
+    }
+
+    /// A tip that is elsewhere in {T} in the rows whose positions are changed.
+    fn slipped(&self, changed: &FittedDraft, from: &FittedDraft) -> Option<f64> {
+        let Some(SearchStep::Part(_, DraftChange::Within(rows @ Rows::Between(..), change))) =
+            changed.steps.last()
+        else {
+            return None;
+        };
+        if !matches!(**change, DraftChange::Seen(_) | DraftChange::Rows { .. } | DraftChange::Column { .. }) {
+            return None;
+        }
+        let (thin, body) = (&from.thin, &self.bodies[from.thin.body]);
+        let off = from.fit.offsets(thin, body);
+        let in_tool = |at: usize| -> Option<Vector3<f64>> {
+            let base = from.fit.bases.get(thin.station[at])?;
+            let flange = body.robot.flange_at(thin.joints(at));
+            Some(flange.rotation.tr_mul(&base.rotation.tr_mul(&off[at])))
+        };
+        let own: Vec<usize> =
+            (0..thin.len()).filter(|&at| rows.contain(thin.rows[at], thin.group[at])).collect();
+        let off: Vec<Vector3<f64>> = own.iter().map(|&at| in_tool(at)).collect::<Option<_>>()?;
+        let middle = |axis: usize| median(&off.iter().map(|off| off[axis]).collect::<Vec<_>>());
+        let step = Vector3::new(middle(0)?, middle(1)?, middle(2)?);
+        let mut left = from.fit.residuals.clone();
+        own.iter().zip(&off).for_each(|(&at, off)| left[at] = (off - step).norm());
+        let least = f64::EPSILON * body.reach;
+        let gain = density(&left, t_scale(&left, least)) - density(&from.fit.residuals, from.fit.scale);
+        Some(from.score + gain + SLIPPED)
+    }
+
+    /// A contact force of another size than the one that a unit says.
+    fn another_force(&self, changed: &FittedDraft, from: &FittedDraft) -> Option<f64> {
+        let Some(SearchStep::Move(number)) = changed.steps.last() else { return None };
+        let factor = self.moves[*number].force?;
+        let scores = FORCE.1.iter().filter_map(|by| {
+            let body = self.bodies[0].with_contact_force_times(factor * by);
+            let fit = fit(&changed.thin, &body, Worthwhile::ANY)?;
+            Some(self.scored(from.steps.clone(), changed.thin.clone(), fit).score + FORCE.0)
+        });
+        scores.max_by(f64::total_cmp)
+    }
+}

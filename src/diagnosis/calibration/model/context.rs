@@ -1,0 +1,260 @@
+//! A calibrated campaign as the effects see it.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::configuration;
+use super::configuration::Configuration;
+use super::entry::Column;
+use super::patterns::Patterns;
+use crate::calibration::campaign::{Campaign, Recording, Targets};
+use crate::calibration::{Calibration, Compensation, Mode, Robust, plausible_compliances};
+use crate::error::Result;
+use crate::inference::Pattern;
+use crate::robot::{Motion, Setup};
+
+/// All that effects need to know of a campaign and its calibration.
+pub struct Context<'a> {
+    pub recording: &'a Recording,
+    /// The recording whose clock and whose mean temperature count: this one, or the one that came
+    /// before.
+    pub since: &'a Recording,
+    pub configurations: Vec<Configuration>,
+    /// Directions that many columns are multiples of.
+    pub patterns: Patterns,
+    /// What each row counts, relative to the others: pooled noise over the noise of its group.
+    pub scale: Vec<f64>,
+    /// Pooled noise of a coordinate, m.
+    pub noise: f64,
+    /// How far each row is off, in noises of its group.
+    off: Vec<f64>,
+    /// Motion of every joint.
+    pub motions: Vec<Motion>,
+    /// Does the robot's file have masses? Without them the torques are those of rod and contact
+    /// alone.
+    pub has_masses: bool,
+    /// C^F of the rod in {T}, m/N; zero for a rigid one.
+    pub force_compliance: Matrix3<f64>,
+    /// Deflection of the rod by its own weight in {T} per acceleration of gravity, m/(m/s²).
+    pub weight_compliance: Matrix3<f64>,
+    /// Deflections in {W} by the rod's model, m, by contact force and by gravity; empty without a
+    /// rod.
+    pub deflection: Vec<[Vector3<f64>; 2]>,
+    /// Masses that are modelled at the tip, and at the flange with what hangs on it, kg.
+    pub modelled_mass: (f64, f64),
+    /// Compliance beyond which the drive of each joint is not of its class, rad/(N·m).
+    pub softest: Vec<f64>,
+    /// Share of `deflection` that the calibration took into account: 1, or 0 where it assumed the
+    /// rod rigid.
+    pub accounted: f64,
+    /// Rows, from 0, after which a first look has seen something move.
+    pub moved_after: Vec<usize>,
+}
+
+impl<'a> Context<'a> {
+    /// All rows count alike.
+    pub fn new(campaign: &'a Campaign, calibration: &Calibration) -> Result<Self> {
+        let recording = &campaign.measurements;
+        let steps = steps(recording, &calibration.deviations);
+        let determined = calibration.fit.covariance.rank;
+        let noise = calibration.noise.estimate(recording, &steps, determined, Robust::Huber)?.pooled;
+        Ok(Context {
+            noise,
+            off: calibration.deviations.iter().map(|deviation| deviation.norm() / noise).collect(),
+            ..Context::still(campaign, calibration.mode, &calibration.setup, &calibration.deflections)?
+        })
+    }
+
+    /// The same where groups scatter by so much, m.
+    pub fn scattered(mut self, of_group: &[f64]) -> Self {
+        self.scale = self.recording.rows.iter().map(|row| self.noise / of_group[row.group]).collect();
+        self.off.iter_mut().zip(&self.scale).for_each(|(off, scale)| *off *= scale);
+        self
+    }
+
+    /// The same where rows count by weights.
+    pub fn weighted(mut self, weights: &[f64]) -> Self {
+        for (row, weight) in weights.iter().enumerate() {
+            self.scale[row] *= weight.sqrt();
+            self.off[row] *= weight.sqrt();
+        }
+        self
+    }
+
+    /// The same where a first look has seen something move after these rows.
+    pub fn moved_after(self, rows: &[usize]) -> Self {
+        Context { moved_after: rows.to_vec(), ..self }
+    }
+
+    /// Of poses that nobody measured, in a recording that came after that of `campaign`.
+    pub fn later(asked: &'a Campaign, mode: Mode, setup: &Setup, campaign: &'a Campaign) -> Result<Self> {
+        let deflections = Compensation::new(asked, mode)?.deflections(setup, &asked.measurements);
+        Ok(Context { since: &campaign.measurements, ..Context::still(asked, mode, setup, &deflections)? })
+    }
+
+    /// Without what only measured points show.
+    fn still(
+        campaign: &'a Campaign,
+        mode: Mode,
+        setup: &Setup,
+        deflections: &[Vector3<f64>],
+    ) -> Result<Self> {
+        let used = Compensation::new(campaign, mode)?;
+        let recording = &campaign.measurements;
+        let softest = plausible_compliances(setup, used.payload);
+        let compliance = plausible(setup, &softest);
+        let configurations = configuration::all(recording, setup, &compliance, deflections, &used);
+        // a rod that was assumed rigid bends as its beam model says
+        let (rod, accounted) = match (mode, &campaign.rod) {
+            (Mode::None, Some(_)) => (Compensation::new(campaign, Mode::Fea)?.compliance, 0.0),
+            _ => (used.compliance, 1.0),
+        };
+        let deflection = |(row, configuration): (usize, &Configuration)| {
+            let force = recording.device(row).rotation * used.contact_force;
+            rod.as_ref().map(|rod| {
+                let per_g = configuration.gravity / crate::units::STANDARD_GRAVITY;
+                [configuration.in_world(&rod.force) * force, configuration.in_world(&rod.gravity) * per_g]
+            })
+        };
+        Ok(Context {
+            recording,
+            since: recording,
+            scale: vec![1.0; recording.len()],
+            noise: 0.0,
+            off: vec![0.0; recording.len()],
+            has_masses: campaign.robot.has_masses(),
+            motions: campaign.robot.joints.iter().map(|joint| joint.motion).collect(),
+            force_compliance: rod.as_ref().map_or_else(Matrix3::zeros, |rod| rod.force),
+            weight_compliance: rod
+                .as_ref()
+                .map_or_else(Matrix3::zeros, |rod| rod.gravity / crate::units::STANDARD_GRAVITY),
+            deflection: configurations.iter().enumerate().filter_map(deflection).collect(),
+            accounted,
+            moved_after: Vec::new(),
+            softest,
+            modelled_mass: modelled_mass(campaign),
+            patterns: Patterns::new(&configurations),
+            configurations,
+        })
+    }
+
+    /// A column of a displacement of the tip, m per unit of the parameter, by row.
+    pub fn column(&self, displacement: impl Fn(usize, &Configuration) -> Vector3<f64>) -> Column {
+        self.part(0..self.configurations.len(), displacement)
+    }
+
+    /// One that is zero but for a range of rows.
+    pub fn part(
+        &self,
+        rows: std::ops::Range<usize>,
+        displacement: impl Fn(usize, &Configuration) -> Vector3<f64>,
+    ) -> Column {
+        let first = 3 * rows.start;
+        let at = |row: usize| {
+            let scaled: [f64; 3] = (displacement(row, &self.configurations[row]) * self.scale[row]).into();
+            scaled
+        };
+        Column { first, values: rows.flat_map(at).collect(), pattern: None }
+    }
+
+    /// A column of a displacement along one of the patterns, by row.
+    pub fn along(&self, pattern: &Pattern, weight: impl Fn(usize, &Configuration) -> f64) -> Column {
+        self.along_from(pattern, 0, weight)
+    }
+
+    /// One that is zero before a row.
+    fn along_from(
+        &self,
+        pattern: &Pattern,
+        first: usize,
+        weight: impl Fn(usize, &Configuration) -> f64,
+    ) -> Column {
+        let at = |row: usize| weight(row, &self.configurations[row]) * self.scale[row];
+        let values = (first..self.configurations.len()).map(at).collect();
+        Column { first, values, pattern: Some(pattern.clone()) }
+    }
+
+    /// A turn of a joint by so much at each row, rad per unit of the parameter.
+    pub fn turn(&self, joint: usize, angle: impl Fn(usize, &Configuration) -> f64) -> Column {
+        self.turn_from(joint, 0, angle)
+    }
+
+    /// The same from a row on.
+    pub fn turn_from(
+        &self,
+        joint: usize,
+        first: usize,
+        angle: impl Fn(usize, &Configuration) -> f64,
+    ) -> Column {
+        self.along_from(&self.patterns.joint[joint], first, angle)
+    }
+
+    /// How far a row is off, in noises of its group.
+    pub fn deviation(&self, row: usize) -> f64 {
+        self.off[row]
+    }
+
+    pub fn joint_count(&self) -> usize {
+        self.motions.len()
+    }
+
+    /// Joints that turn.
+    pub fn revolute(&self) -> Vec<usize> {
+        (0..self.joint_count()).filter(|&j| self.motions[j] == Motion::Revolute).collect()
+    }
+
+    /// Least and greatest value of a joint, rad or m.
+    pub fn range(&self, joint: usize) -> (f64, f64) {
+        let values = self.configurations.iter().map(|configuration| configuration.joints[joint]);
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
+    }
+
+    /// Largest size of a number over all rows.
+    pub fn largest(&self, number: impl Fn(&Configuration) -> f64) -> f64 {
+        let sizes = self.configurations.iter().map(|configuration| number(configuration).abs());
+        sizes.fold(0.0, f64::max)
+    }
+
+    pub fn has_sockets(&self) -> bool {
+        matches!(self.recording.targets, Targets::Sockets(_))
+    }
+
+    /// `pose 7`, with its clamp or socket where several poses have that name.
+    pub fn pose_name(&self, row: usize) -> String {
+        let own = &self.recording.rows[row].pose;
+        let is_unique = self.recording.rows.iter().filter(|other| &other.pose == own).count() == 1;
+        match is_unique {
+            true => format!("pose {own}"),
+            false => format!("pose {}", self.recording.pose_name(row)),
+        }
+    }
+}
+
+fn modelled_mass(campaign: &Campaign) -> (f64, f64) {
+    let last = campaign.robot.joints.last().and_then(|joint| joint.body).map_or(0.0, |body| body.mass);
+    let rod = campaign.rod.as_ref();
+    (rod.map_or(0.0, |rod| rod.tip_mass), last + rod.map_or(0.0, |rod| rod.mass()))
+}
+
+/// Compliances as effects use them: a drive that a calibration has made softer than drives of its
+/// class are, in place of something else, would spoil them.
+pub fn plausible(setup: &Setup, softest: &[f64]) -> Vec<f64> {
+    setup.compliance.iter().zip(softest).map(|(own, softest)| own.clamp(0.0, softest.max(0.0))).collect()
+}
+
+/// Differences of neighbours in each clamp or socket, over √2: as large as noise alone, whatever
+/// else a clamp is off by. With the median of their lengths neither a pose that was misread nor a
+/// clamp that moved makes all its poses count less.
+fn steps(recording: &Recording, deviations: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    let mut steps = deviations.to_vec();
+    for group in 0..recording.groups.len() {
+        let rows: Vec<usize> =
+            (0..recording.len()).filter(|&row| recording.rows[row].group == group).collect();
+        for pair in rows.windows(2) {
+            steps[pair[1]] = (deviations[pair[1]] - deviations[pair[0]]) / 2.0f64.sqrt();
+        }
+        if let [first, second, ..] = rows[..] {
+            steps[first] = steps[second];
+        }
+    }
+    steps
+}

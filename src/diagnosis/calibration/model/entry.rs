@@ -1,0 +1,92 @@
+//! A candidate with the columns that its parameters make of a recording.
+
+use nalgebra::DVector;
+
+use super::law::Law;
+use crate::inference::{Candidate, Effect, Location, Parameter, Pattern, StoredColumn};
+use crate::units::Unit;
+
+/// ∂response/∂parameter: data from `first` on, m per unit of the parameter; zero elsewhere. Of a
+/// pattern, rows from `first` on, and what each of them counts.
+#[derive(Debug, Clone)]
+pub struct Column {
+    pub first: usize,
+    pub values: Vec<f64>,
+    pub pattern: Option<Pattern>,
+}
+
+/// A candidate with how it acts and with what each of its parameters does.
+pub struct Entry {
+    pub candidate: Candidate,
+    pub law: Law,
+    pub columns: Vec<Column>,
+}
+
+impl Column {
+    /// Adds `value` times the column to a recording.
+    pub fn add_to(&self, response: &mut DVector<f64>, value: f64) {
+        let Some(pattern) = &self.pattern else {
+            let slots = response.as_mut_slice().iter_mut().skip(self.first);
+            slots.zip(&self.values).for_each(|(slot, v)| *slot += value * v);
+            return;
+        };
+        let first = pattern.block * self.first;
+        let slots = response.as_mut_slice()[first..].chunks_mut(pattern.block);
+        for ((slots, weight), along) in
+            slots.zip(&self.values).zip(pattern.values[first..].chunks(pattern.block))
+        {
+            slots.iter_mut().zip(along).for_each(|(slot, along)| *slot += value * (weight * along));
+        }
+    }
+
+    /// As the engine sees it, for a parameter of such a size.
+    pub fn stored(&self, size: f64) -> StoredColumn<'_> {
+        let (first, values) = (self.first, self.values.as_slice().into());
+        StoredColumn { factor: size, first, values, pattern: self.pattern.as_ref() }
+    }
+
+    pub fn is_zero(&self) -> bool {
+        self.values.iter().all(|&v| v == 0.0)
+    }
+}
+
+impl Entry {
+    /// A candidate as likely as its effect's others, of an effect that acts in one way only.
+    pub fn new(effect: &'static Effect, location: Location, parameters: Vec<(Parameter, Column)>) -> Entry {
+        let (parameters, columns) = parameters.into_iter().unzip();
+        let candidate = Candidate {
+            effect,
+            location,
+            parameters,
+            weight: 1.0,
+            is_alternative: false,
+            is_nonparametric: false,
+        };
+        Entry { candidate, law: Law::Only, columns }
+    }
+
+    /// The same by one of several laws.
+    pub fn by(self, law: Law) -> Entry {
+        Entry { law, ..self }
+    }
+
+    /// Without parameters that do nothing; `None` where none is left.
+    pub fn felt(self) -> Option<Entry> {
+        // the terms of a gear's error are distinguished by their number
+        let keeps_all = self.law.gear().is_some() && self.columns.iter().any(|column| !column.is_zero());
+        let is_kept: Vec<bool> = self.columns.iter().map(|column| keeps_all || !column.is_zero()).collect();
+        let law = self.law.of_parameters(&is_kept);
+        let parameters = self.candidate.parameters.into_iter().zip(self.columns).zip(is_kept);
+        let (parameters, columns): (Vec<_>, Vec<_>) =
+            parameters.filter(|(_, is_kept)| *is_kept).map(|(own, _)| own).unzip();
+        let candidate = Candidate { parameters, ..self.candidate };
+        (!columns.is_empty()).then_some(Entry { candidate, columns, law })
+    }
+}
+
+/// A parameter without effect at zero and without bounds.
+pub fn linear(name: impl Into<String>, size: f64) -> Parameter {
+    let name = name.into();
+    let bounds = (f64::NEG_INFINITY, f64::INFINITY);
+    Parameter { unit: Unit::of_key(&name), name, neutral: 0.0, size, bounds }
+}

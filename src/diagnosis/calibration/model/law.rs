@@ -1,0 +1,221 @@
+//! How an effect acts, where it may act in several ways: as data, beside the candidate.
+//!
+//! The location of a candidate says the same to people; nothing reads it back from there.
+
+use std::fmt;
+
+use super::gear::Gear;
+use crate::inference::Part;
+
+/// The law of a candidate.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Law {
+    /// The only one of its effect, or a curve that nobody has named.
+    Only,
+    /// An error of a gear or encoder.
+    Gear(Gear),
+    /// Play of a joint.
+    Play(TakenUp),
+    /// A stiffness that depends on the load.
+    Nonlinear(Power),
+    /// Compliance of a joint whose loads nobody knows: one parameter for every frame beyond it
+    /// where a weight may sit, by its joint; `None` is the flange.
+    MassesUnknown(Vec<Option<usize>>),
+    /// A rod of another stiffness.
+    Rod(RodLoad),
+    /// Drift.
+    Drift(Course, Frame),
+    /// Drift of a joint or its link, or growth of the arm.
+    Warms(Course, Warmed),
+    /// A clamp, a socket or the sockets of a plate that moved, by their numbers among the groups of
+    /// the recording.
+    Moved(Vec<usize>),
+}
+
+/// What takes up the play of a joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TakenUp {
+    /// The torque of its load.
+    ByTorque,
+    /// Friction: it stays at the side that it was driven to.
+    ByApproach,
+}
+
+/// Power of the torque that a joint deflects with, besides the first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Power {
+    /// τ|τ|.
+    Square,
+    /// τ³.
+    Cube,
+}
+
+/// The load under which a rod's stiffness is another one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RodLoad {
+    /// All of them.
+    All,
+    /// The contact force.
+    Contact,
+    /// The weight of rod and ball.
+    Weight,
+}
+
+/// What a drift follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Course {
+    /// The share of the recording that is over.
+    Order,
+    /// An exponential whose time constant is this share of the recording.
+    WarmUp(f64),
+    /// Temperature.
+    Temperature,
+    /// Time.
+    Time,
+}
+
+/// Where a drift goes on in a fixed direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Frame {
+    /// In {W}: the robot drifts on its base.
+    World,
+    /// In {T}: the tool drifts on its flange.
+    Tool,
+}
+
+/// What of a joint drifts, or of all of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Warmed {
+    /// Its zero.
+    Zero,
+    /// The length of the link that it moves.
+    Length,
+    /// The lengths of all links, by one share.
+    Arm,
+}
+
+impl Law {
+    /// What a transmission error is a function of; `None` for any other law.
+    pub fn gear(&self) -> Option<&Gear> {
+        match self {
+            Law::Gear(gear) => Some(gear),
+            Law::Only
+            | Law::Play(_)
+            | Law::Nonlinear(_)
+            | Law::MassesUnknown(_)
+            | Law::Rod(_)
+            | Law::Drift(..)
+            | Law::Warms(..)
+            | Law::Moved(_) => None,
+        }
+    }
+}
+
+impl Law {
+    /// The law of those parameters that are kept, of as many as `is_kept` has.
+    pub fn of_parameters(self, is_kept: &[bool]) -> Law {
+        match self {
+            Law::MassesUnknown(frames) => {
+                let kept = frames.into_iter().zip(is_kept).filter(|(_, is_kept)| **is_kept);
+                Law::MassesUnknown(kept.map(|(frame, _)| frame).collect())
+            }
+            Law::Only
+            | Law::Gear(_)
+            | Law::Play(_)
+            | Law::Nonlinear(_)
+            | Law::Rod(_)
+            | Law::Drift(..)
+            | Law::Warms(..)
+            | Law::Moved(_) => self,
+        }
+    }
+}
+
+impl RodLoad {
+    /// `under its weight`; nothing for all loads.
+    pub fn description(self) -> Option<&'static str> {
+        match self {
+            RodLoad::All => None,
+            RodLoad::Contact => Some("under the contact force"),
+            RodLoad::Weight => Some("under its weight"),
+        }
+    }
+}
+
+impl Course {
+    /// True for what needs a thermometer or a clock.
+    pub fn is_clocked(self) -> bool {
+        match self {
+            Course::Temperature | Course::Time => true,
+            Course::Order | Course::WarmUp(_) => false,
+        }
+    }
+
+    /// Unit of a drift's parameters: at the end of their names, and for people.
+    pub fn unit(self) -> (&'static str, &'static str) {
+        match self {
+            Course::Order | Course::WarmUp(_) => ("um", "µm"),
+            Course::Temperature => ("um_per_k", "µm per kelvin"),
+            Course::Time => ("um_per_h", "µm per hour"),
+        }
+    }
+
+    /// The same of an angle.
+    pub fn angle_unit(self) -> (&'static str, &'static str) {
+        match self {
+            Course::Order | Course::WarmUp(_) => ("urad", "µrad"),
+            Course::Temperature => ("urad_per_k", "µrad per kelvin"),
+            Course::Time => ("urad_per_h", "µrad per hour"),
+        }
+    }
+
+    /// The same of lengths that grow by a share.
+    pub fn share_unit(self) -> (&'static str, &'static str) {
+        match self {
+            Course::Order | Course::WarmUp(_) => ("um_per_m", "µm/m"),
+            Course::Temperature => ("um_per_m_per_k", "µm/m per kelvin"),
+            Course::Time => ("um_per_m_per_h", "µm/m per hour"),
+        }
+    }
+}
+
+impl fmt::Display for Course {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Course::Order => f.write_str("order"),
+            Course::WarmUp(share) => {
+                write!(f, "warm-up over {} % of the recording", 100.0 * share)
+            }
+            Course::Temperature => f.write_str("temperature"),
+            Course::Time => f.write_str("time"),
+        }
+    }
+}
+
+impl Frame {
+    /// What drifts.
+    pub fn part(self) -> Part {
+        match self {
+            Frame::World => Part::Base,
+            Frame::Tool => Part::Tool,
+        }
+    }
+}
+
+impl Warmed {
+    /// For people: `zero, with temperature`.
+    pub fn form(self, course: Course) -> String {
+        match self {
+            Warmed::Zero => format!("zero, with {course}"),
+            Warmed::Length => format!("length of its link, with {course}"),
+            Warmed::Arm => format!("with {course}"),
+        }
+    }
+}

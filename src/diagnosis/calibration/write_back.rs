@@ -1,0 +1,5 @@
+//! What was found, written into robot and campaign.
+
+pub mod apply;
+pub mod correction_table;
+pub mod destination;

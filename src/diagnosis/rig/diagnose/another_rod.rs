@@ -1,0 +1,94 @@
+//! Readings that another rod explains better than the given one with all that may be wrong with it.
+//!
+//! Slopes alone distinguish rods that differ by a fifth (`mistakes/`). Where physics had to be
+//! added to the given rod, or something is left, those of the other files that come near, and
+//! the given one with its lengths or pipes exchanged, are compared in full: each with all effects,
+//! by the probability that the recording then has.
+
+use crate::diagnosis::rig::mistakes::{Mended, ODDS, OtherRod, RARE};
+use crate::diagnosis::rig::model::RigModel;
+use crate::diagnosis::rig::model::wanted::Wanted;
+use crate::error::Result;
+use crate::inference::{Compared, Diagnosis, Evidence, Finding, Kind, Location, Rival, rms};
+
+/// Ln of the odds within which two rods are indistinguishable: 20.
+const ALIKE: f64 = 2.995_732;
+
+/// What another rod leaves at most, as a share of what it explains: before any effect is added, and
+/// unexplained beside all of them.
+const CURED: f64 = 0.5;
+const LITTLE: f64 = 0.1;
+
+/// One of the other rods beside the given one.
+pub struct Other {
+    /// What it is.
+    pub rod: OtherRod,
+    /// Ln of the odds for it.
+    pub log_odds: f64,
+    /// How far what it says of the readings is from what the given one says, m (rms).
+    pub explains: f64,
+}
+
+impl Other {
+    /// True where that is the rod, beyond doubt.
+    pub fn is_meant(&self) -> bool {
+        self.log_odds > ODDS
+    }
+}
+
+/// Does another rod, whose diagnosis this is and which explains `explains` (m, rms), cure a
+/// recording: is what it leaves half of that at most before anything else is added, and little
+/// where nothing explains it? Slopes are odds between rods, whatever else is wrong with both.
+pub fn is_cured(explains: f64, diagnosis: &Diagnosis) -> bool {
+    let left = diagnosis.discrepancy.as_ref().map_or(0.0, |left| left.rms);
+    rms(&diagnosis.before) < CURED * explains && left < LITTLE * explains
+}
+
+/// The other rods that the readings may be of, the likeliest first; none where they agree with the
+/// given one.
+pub fn others(
+    mended: &Mended,
+    model: &RigModel,
+    evidence: &Evidence,
+    diagnosis: &Diagnosis,
+) -> Result<Vec<Other>> {
+    let mut found = Vec::new();
+    if diagnosis.discrepancy.is_none()
+        && !diagnosis.findings.iter().any(|finding| is_of_the_rod(model, finding))
+    {
+        return Ok(found);
+    }
+    if mended.others.is_empty() {
+        return Ok(found);
+    }
+    let compared = Compared::new(model, evidence);
+    for meant in &mended.others {
+        let (other, of_other, _) =
+            RigModel::with_effects(&mended.readings, Some(&meant.rod), &Wanted::AllAnd(&model.own))?;
+        if of_other.residual.len() != evidence.residual.len() {
+            continue;
+        }
+        let log_odds = compared.log_odds(&other, &of_other) + meant.log_prior + RARE;
+        let explains = rms(&(&evidence.residual - &of_other.residual));
+        found.push(Other { rod: meant.clone(), log_odds, explains });
+    }
+    found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
+    Ok(found)
+}
+
+/// Where two rods are indistinguishable, what makes the given one fit has the other as its rival.
+pub fn add_rivals(others: &[Other], model: &RigModel, diagnosis: &mut Diagnosis) {
+    for finding in diagnosis.findings.iter_mut().filter(|finding| is_of_the_rod(model, finding)) {
+        for other in others.iter().filter(|other| other.log_odds > -ALIKE) {
+            let location = Location::from(other.rod.location.clone());
+            let odds = (-other.log_odds).exp().max(1.0);
+            // a file is sooner looked at than anything is measured
+            finding.rivals.insert(0, Rival::without_term(other.rod.effect, location, odds));
+        }
+    }
+}
+
+fn is_of_the_rod(model: &RigModel, finding: &Finding) -> bool {
+    let changes = |candidate: usize| model.actions[candidate].iter().any(|action| action.changes_the_rod());
+    finding.kind() == Kind::Physics && finding.parts.iter().any(|part| changes(part.term.candidate))
+}

@@ -1,0 +1,30 @@
+//! What laws of files follow instead of their variable.
+
+use crate::inference::law::{LoopShape, Memory, Site};
+use crate::rod::LawMemory;
+
+/// Least number of a memory, as a share of the largest value or in s: none has less than nothing.
+const LEAST: f64 = 1e-6;
+
+/// The variable of each datum of a site as a law with this memory sees it, SI; `own` are the
+/// memory's constants by their names in files, in the unit of the variable.
+pub fn remembered(memory: Option<LawMemory>, site: &Site, own: impl Fn(&str) -> f64) -> Vec<f64> {
+    let width = || (own("r") * site.variable.si / site.largest()).max(LEAST);
+    let (memory, number) = match memory {
+        None => (Memory::None, 0.0),
+        Some(LawMemory::Stop) => (Memory::Stop, width()),
+        Some(LawMemory::BoucWen) => (Memory::BoucWen(LoopShape::within(own("n"), own("s"))), width()),
+        Some(LawMemory::Lag) => (Memory::Lag, own("tau").max(LEAST)),
+    };
+    memory.remembered(site, number).0
+}
+
+/// How a file says what a law remembers, but for the sign of the last move, which formulas have.
+pub fn in_file(memory: Memory) -> Option<LawMemory> {
+    match memory {
+        Memory::None | Memory::Side => None,
+        Memory::Stop => Some(LawMemory::Stop),
+        Memory::BoucWen(_) => Some(LawMemory::BoucWen),
+        Memory::Lag => Some(LawMemory::Lag),
+    }
+}

@@ -1,0 +1,83 @@
+//! Clocks of creep and loops of hysteresis, by hand.
+
+use super::*;
+use crate::diagnosis::rig::recording::datum;
+use crate::rig::readings::Readings;
+
+const TEXT: &str = "axis,load_n,phase,time_s,dy_um
+-y,5,load,100,0
+-y,10,load,200,0
+-y,5,unload,300,0
+-y,0,unload,400,0
+";
+
+fn data(text: &str) -> Vec<Datum> {
+    datum::all(&Readings::from_text("f", text).unwrap().rows)
+}
+
+#[test]
+fn clocks_start_where_they_say() {
+    let data = data(TEXT);
+    let second = |clock| creep(&data, clock, 1.0).unwrap().relative[1];
+    assert_eq!(second(Clock::FirstReading), 101f64.log10());
+    assert_eq!(second(Clock::FirstLoad), 201f64.log10());
+    assert_eq!(second(Clock::File), 201f64.log10());
+    // 5 N for 200 s, 5 N more for 100 s
+    let each = (5.0 * 201f64.log10() + 5.0 * 101f64.log10()) / 10.0;
+    assert!((second(Clock::EachLoad(Changed::Early)) - each).abs() < 1e-15);
+}
+
+#[test]
+fn an_unloaded_rod_still_recovers() {
+    let memory = creep(&data(TEXT), Clock::EachLoad(Changed::Early), 1.0).unwrap();
+    let left = 5.0 * (401f64.log10() + 301f64.log10() - 201f64.log10() - 101f64.log10());
+    assert!((memory.lingering[3] - left).abs() < 1e-12 && left > 0.0);
+    assert_eq!(memory.relative[3], 0.0);
+}
+
+#[test]
+fn loops_close_at_the_largest_load() {
+    let data = data(TEXT);
+    let closed = hysteresis(&data, Loop::Closed).unwrap();
+    assert_eq!(closed.relative, [0.0, 0.0, 2.0, 4.0]);
+    let remanent = hysteresis(&data, Loop::Remanent).unwrap();
+    assert_eq!(remanent.lingering, [0.0, 0.0, 10.0, 20.0]);
+    let symmetric = hysteresis(&data, Loop::Symmetric).unwrap();
+    assert_eq!(symmetric.relative, [-1.0, 0.0, 1.0, 2.0]);
+    // the branches of a virgin rod meet at the largest load, and are h·F_max apart at half of
+    // it
+    let virgin = hysteresis(&data, Loop::Virgin).unwrap();
+    let felt = |i: usize| data[i].load * virgin.relative[i] + virgin.lingering[i];
+    assert!((felt(2) - felt(0) - 10.0).abs() < 1e-12 && felt(3) > 0.0);
+}
+
+#[test]
+fn a_new_rod_is_new_once_in_each_direction() {
+    let run = |direction: &str, trial: usize| {
+        format!(
+            "{direction},5,load,{trial},0\n{direction},10,load,{trial},0\n{direction},5,unload,{trial},0\n"
+        )
+    };
+    let text = |runs: &[String]| "axis,load_n,phase,trial,dy_um\n".to_owned() + &runs.concat();
+    let mixed = data(&text(&[run("y", 1), run("-y", 2), run("y", 3)]));
+    let before = hysteresis(&mixed, Loop::Symmetric).unwrap();
+    for (shape, set) in [(Loop::NewByRayleigh, 2.0), (Loop::NewByPlays, 1.0)] {
+        let new = hysteresis(&mixed, shape).unwrap();
+        let felt = |i: usize| mixed[i].load * new.relative[i] + new.lingering[i];
+        // half the largest load, all of it, and half of it again
+        for (at, first) in [(0, 0.0), (3, 0.0)] {
+            assert_eq!([0, 1, 2].map(|k| felt(at + k)), [first, 10.0 * set, 10.0 * set + 5.0]);
+        }
+        assert_eq!(
+            (&new.relative[6..], &new.lingering[6..]),
+            (&before.relative[6..], &before.lingering[6..])
+        );
+    }
+}
+
+#[test]
+fn without_time_or_a_way_down_there_is_no_memory() {
+    let data = data("axis,load_n,time_s,dy_um\ny,5,1,0\ny,6,,0\n");
+    assert!(creep(&data, Clock::File, 1.0).is_none());
+    assert!(hysteresis(&data, Loop::Closed).is_none());
+}

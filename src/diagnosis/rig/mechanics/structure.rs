@@ -1,0 +1,291 @@
+//! The compliance of a rod as a sum of parts that are exactly linear in what may be wrong with
+//! them.
+//!
+//! A rod is an open chain: the flexibilities of its parts add up. With C the displacement at the
+//! read station per force at the load station, in {T},
+//!
+//! ```text
+//! C = C₀ + (P + B·(1/g − 1) + D·(k − k₀))/f − P + Σ β_j·J_j
+//! P pipes and bend     f factor on E and G        B torsion and shear of the pipes     g factor on G
+//! D bending of the arc k, k₀ its flexibility factor, the file's factor        J_j a joint per rad/(N·m), β_j its change
+//! ```
+//!
+//! P, B and D come from the beam model itself, as differences of models in which one thing was
+//! changed. A joint at x turns what is beyond it about its axes a, those across the tangent t or t
+//! itself: with the force at p and the reading at q
+//!
+//! ```text
+//! J = Σ (a × (q − x))·(a × (p − x))ᵀ = [q − x]×·A·[p − x]×ᵀ     A = 1 − t·tᵀ of bending, t·tᵀ of torsion
+//! ```
+
+mod softening;
+#[cfg(test)]
+mod tests;
+
+use nalgebra::{Matrix3, Vector3};
+
+pub use self::softening::{Nodes, Softening};
+use crate::beam::{Physics, RodModel};
+use crate::error::{Error, Result};
+use crate::rig::readings::Readings;
+use crate::rod::{BendFlexibility, Pipe, Rod};
+use crate::spatial::skew;
+use crate::units::{MM, UM};
+
+/// m/N for each pair of load and read station.
+pub type Parts = Vec<Matrix3<f64>>;
+
+/// The parts of a rod.
+#[derive(Debug, Clone)]
+pub struct Structure {
+    whole: Parts,
+    pipes: Parts,
+    torsion_and_shear: Parts,
+    /// Per unit of the bend's flexibility factor; nothing without an arc.
+    arc: Option<Parts>,
+    /// The rod file's flexibility factor of the bend.
+    pub bend_factor: f64,
+    /// In the order in which they were added.
+    joints: Vec<Hinge>,
+    pairs: Vec<(f64, f64)>,
+    rod: Rod,
+}
+
+/// How a joint gives way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Deformation {
+    /// About the axes across the rod.
+    Bending,
+    /// About the rod's own axis.
+    Torsion,
+}
+
+/// A joint that gives way in one of these ways.
+#[derive(Debug, Clone)]
+struct Hinge {
+    deformation: Deformation,
+    /// Per rad/(N·m).
+    parts: Parts,
+}
+
+impl Structure {
+    /// The parts of `rod` between pairs of load and read stations, m.
+    pub fn new(rod: &Rod, pairs: Vec<(f64, f64)>) -> Result<Structure> {
+        let without_joints = Rod { joints: Vec::new(), ..rod.clone() };
+        let bend_factor = rod.bend_flexibility.factor(&rod.bend.section, rod.bend_radius);
+        let pipes = responses(&without_joints, &pairs)?;
+        // G twice as high halves what G is responsible for
+        let stiffer = responses(&with_moduli(&without_joints, 1.0, 2.0), &pairs)?;
+        let arc = match rod.arc_length() > 0.0 {
+            true => {
+                let flexible = BendFlexibility::Factor(bend_factor + 1.0);
+                let softer = Rod { bend_flexibility: flexible, ..without_joints.clone() };
+                Some(difference(&responses(&softer, &pairs)?, &pipes, 1.0))
+            }
+            false => None,
+        };
+        Ok(Structure {
+            whole: responses(rod, &pairs)?,
+            torsion_and_shear: difference(&pipes, &stiffer, 2.0),
+            pipes,
+            // of an arc so short that the beam model makes it a corner nothing is left
+            arc: arc.filter(|parts| parts.iter().any(|part| part.amax() > 0.0)),
+            bend_factor,
+            joints: Vec::new(),
+            pairs,
+            rod: without_joints,
+        })
+    }
+
+    /// Adds a joint of no compliance yet at a station (m); its numbers for bending and for torsion.
+    pub fn add_joint(&mut self, station: f64) -> [usize; 2] {
+        let first = self.joints.len();
+        let (at, tangent) = (self.rod.point(station), tangent(&self.rod, station));
+        let along = tangent * tangent.transpose();
+        let bending = (Deformation::Bending, Matrix3::identity() - along);
+        for (deformation, axes) in [bending, (Deformation::Torsion, along)] {
+            let of_pair = |&(load, read): &(f64, f64)| match station <= load.min(read) {
+                true => {
+                    let lever = |station| skew(&(self.rod.point(station) - at));
+                    lever(read) * axes * lever(load).transpose()
+                }
+                false => Matrix3::zeros(),
+            };
+            let parts = self.pairs.iter().map(of_pair).collect();
+            self.joints.push(Hinge { deformation, parts });
+        }
+        [first, first + 1]
+    }
+
+    /// Adds joints by which the one at `station`, added as `joint`, may be moved within `range`
+    /// (m), no farther than where the rod bends or a load or a sensor stands; `None` where it
+    /// stands at such a place.
+    pub fn add_nodes(&mut self, station: f64, joint: [usize; 2], range: (f64, f64)) -> Option<Nodes> {
+        const LEAST: f64 = 0.01 * MM;
+        let ends = [0.0, self.rod.bend_start(), self.rod.bend_end(), self.rod.length()];
+        let kinks = self.pairs.iter().flat_map(|&(load, read)| [load, read]).chain(ends);
+        let (before, behind) = kinks.fold(range, |(before, behind), kink| match kink <= station {
+            true => (before.max(kink), behind),
+            false => (before, behind.min(kink)),
+        });
+        if (station - before).min(behind - station) < LEAST {
+            return None;
+        }
+        let joints = [self.add_joint(before), joint, self.add_joint(behind)];
+        Some(Nodes { stations: [before, station, behind], joints })
+    }
+
+    /// What pipes add, m/N, whose flexibility in bending and torsion is larger by a share that
+    /// differs from station to station:
+    ///
+    /// ```text
+    /// Σ ∫ share(s)·[q − x]×·A(s)·[p − x]×ᵀ ds     A = (1 − t·tᵀ)/EI + t·tᵀ/GJ
+    /// ```
+    pub fn varying(&self, share: &dyn Fn(f64) -> f64) -> Parts {
+        /// Steps of the midpoint rule along a rod: what varies slowly is known to 0.1 %.
+        const STEPS: usize = 96;
+        let rod = &self.rod;
+        let step = rod.length() / STEPS as f64;
+        let mut parts = vec![Matrix3::zeros(); self.pairs.len()];
+        for k in 0..STEPS {
+            let station = (k as f64 + 0.5) * step;
+            let pipe = match station {
+                s if s < rod.bend_start() => &rod.pipe1,
+                s if s < rod.bend_end() => &rod.bend,
+                _ => &rod.pipe2,
+            };
+            let (at, tangent) = (rod.point(station), tangent(rod, station));
+            let along = tangent * tangent.transpose();
+            let bending = pipe.material.youngs_modulus * pipe.section.second_moment();
+            let torsion = pipe.material.shear_modulus * pipe.section.torsion_constant();
+            let flexibility =
+                ((Matrix3::identity() - along) / bending + along / torsion) * (share(station) * step);
+            for (part, &(load, read)) in parts.iter_mut().zip(&self.pairs) {
+                if station <= load.min(read) {
+                    let lever = |station| skew(&(rod.point(station) - at));
+                    *part += lever(read) * flexibility * lever(load).transpose();
+                }
+            }
+        }
+        parts
+    }
+
+    /// The parts as `softening` leaves them; unchanged ones to the last digit where it changes
+    /// nothing.
+    pub fn softened(&self, softening: &Softening) -> Parts {
+        let of_pair = |pair: usize| {
+            let mut pipes = self.pipes[pair];
+            pipes += self.torsion_and_shear[pair] * (1.0 / softening.shear - 1.0);
+            if let Some(arc) = &self.arc {
+                pipes += arc[pair] * softening.bend;
+            }
+            let mut whole = self.whole[pair] + (pipes / softening.stiffness - self.pipes[pair]);
+            for &(joint, change) in &softening.joints {
+                whole += self.joints[joint].parts[pair] * change;
+            }
+            whole
+        };
+        (0..self.whole.len()).map(of_pair).collect()
+    }
+
+    /// How the joint of this number gives way.
+    pub fn deformation(&self, joint: usize) -> Deformation {
+        self.joints[joint].deformation
+    }
+
+    /// What large deflections of `rod`, this one or a softer one, add to the displacement
+    /// per square of the load along each axis, m/N² (columns: axes), for each pair of stations: to
+    /// the second order, which is even in the load.
+    pub fn second_order(&self, rod: &Rod) -> Result<Parts> {
+        /// Enough for three digits.
+        const ELEMENTS: usize = 48;
+        let stations: Vec<f64> = self.pairs.iter().flat_map(|&(load, read)| [load, read]).collect();
+        let model = RodModel::new(rod, &Physics::WHOLE, ELEMENTS, &stations)?;
+        let mut known: Vec<(f64, [Vec<nalgebra::Vector3<f64>>; 3])> = Vec::new();
+        let mut parts = Vec::new();
+        for &(load, read) in &self.pairs {
+            if !known.iter().any(|(station, _)| *station == load) {
+                let along = |axis: usize| model.second_order(model.node_at(load), axis, 1.0);
+                known.push((load, [along(0)?, along(1)?, along(2)?]));
+            }
+            let node = model.node_at(read);
+            let columns = known.iter().find(|(station, _)| *station == load).map(|(_, along)| along);
+            parts.push(columns.map_or_else(Matrix3::zeros, |along| {
+                Matrix3::from_columns(&[along[0][node], along[1][node], along[2][node]])
+            }));
+        }
+        Ok(parts)
+    }
+
+    /// True where there is an arc that can ovalise.
+    pub fn has_arc(&self) -> bool {
+        self.arc.is_some()
+    }
+
+    /// How far the whole rod bends and twists at the tip per moment there, ∫ds/EI and ∫ds/GJ,
+    /// rad/(N·m).
+    pub fn rotation(&self) -> [f64; 2] {
+        let rod = &self.rod;
+        let (start, end, length) = (rod.bend_start(), rod.bend_end(), rod.length());
+        let parts = [(&rod.pipe1, start), (&rod.bend, end - start), (&rod.pipe2, length - end)];
+        let bending = |pipe: &Pipe| pipe.material.youngs_modulus * pipe.section.second_moment();
+        let torsion = |pipe: &Pipe| pipe.material.shear_modulus * pipe.section.torsion_constant();
+        [
+            parts.iter().map(|(pipe, length)| length / bending(pipe)).sum(),
+            parts.iter().map(|(pipe, length)| length / torsion(pipe)).sum(),
+        ]
+    }
+
+    /// The rod, without its joints.
+    pub fn rod(&self) -> &Rod {
+        &self.rod
+    }
+}
+
+/// Refuses stations that are not on the rod. The tip may be named with its last digit rounded.
+pub fn check_stations(readings: &Readings, rod: &Rod) -> Result<()> {
+    let tip = rod.length();
+    for row in &readings.rows {
+        let stations = [("load_station_mm", row.load_station), ("read_station_mm", row.read_station)];
+        for (name, station) in stations {
+            let Some(station) = station.filter(|s| *s > tip + UM) else { continue };
+            return Err(Error::Input {
+                at: crate::error::Place { file: readings.file.clone(), line: row.line, column: 0 },
+                found: format!("{name} is {}", station / MM),
+                expected: format!("a station on rod \"{}\", 0 to {:.3} mm (the tip)", rod.name, tip / MM),
+                hint: None,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Displacement at the read station per force at the load station, m/N.
+pub fn responses(rod: &Rod, pairs: &[(f64, f64)]) -> Result<Parts> {
+    let stations: Vec<f64> = pairs.iter().flat_map(|&(load, read)| [load, read]).collect();
+    let model = RodModel::new(rod, &Physics::WHOLE, 1, &stations)?;
+    pairs.iter().map(|&(load, read)| Ok(model.force_response(load, read)?.translation)).collect()
+}
+
+/// Direction of the undeformed centreline at a station, in {T}: that before a corner.
+fn tangent(rod: &Rod, station: f64) -> Vector3<f64> {
+    if station <= rod.bend_start() {
+        return Vector3::z();
+    }
+    let turn = rod.turn().min((station - rod.bend_start()) / rod.bend_radius.max(f64::MIN_POSITIVE));
+    Vector3::new(turn.sin(), 0.0, turn.cos())
+}
+
+fn difference(a: &[Matrix3<f64>], b: &[Matrix3<f64>], factor: f64) -> Parts {
+    a.iter().zip(b).map(|(a, b)| (a - b) * factor).collect()
+}
+
+/// A rod with other moduli: factors on E and G of all pipes.
+pub fn with_moduli(rod: &Rod, e: f64, g: f64) -> Rod {
+    let mut rod = rod.clone();
+    for pipe in [&mut rod.pipe1, &mut rod.bend, &mut rod.pipe2] {
+        pipe.material.youngs_modulus *= e;
+        pipe.material.shear_modulus *= g;
+    }
+    rod
+}

@@ -1,0 +1,33 @@
+//! Mistakes of units, signs and names that a file of readings may hold, as a list.
+
+mod in_file;
+mod signs;
+mod swaps;
+mod units;
+
+pub(super) use self::in_file::Labels;
+use self::signs::signs;
+use self::swaps::swaps;
+pub(super) use self::units::{BESIDE, HARDLY_BESIDE, like_physics};
+use self::units::{decimals, load_units, reading_units};
+use super::possible::PossibleMistake;
+
+/// Every mistake that lines with these labels could show.
+pub(super) fn all(labels: &Labels) -> Vec<PossibleMistake> {
+    let mut all = load_units(labels, false);
+    all.extend(reading_units(labels));
+    all.extend(signs(labels));
+    all.extend(swaps(labels));
+    all
+}
+
+/// Every one that some trials could show which others are compared with: what softer or stiffer
+/// rods look like too, and decimal places.
+pub(super) fn in_trials(labels: &Labels) -> Vec<PossibleMistake> {
+    let mut all = load_units(labels, true);
+    all.extend(reading_units(labels));
+    all.extend(decimals(labels));
+    all.extend(signs(labels));
+    all.extend(swaps(labels));
+    all
+}

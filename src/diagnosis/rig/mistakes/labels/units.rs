@@ -1,0 +1,233 @@
+//! Columns in another unit than their names say.
+
+use self::Cure::{Divide, Multiply};
+use super::in_file::{ALL, Labels, ONE_AXIS, UNUSUAL, mask};
+use crate::diagnosis::rig::effects::mistakes::UNIT_MISTAKE;
+use crate::diagnosis::rig::mistakes::possible::{PossibleMistake, exact};
+use crate::diagnosis::rig::mistakes::relabelling::Relabelling;
+use crate::diagnosis::rig::recording::columns::{axis_rows, columns, load_column};
+use crate::inference::Key;
+use crate::rig::readings::LoadColumn;
+use crate::spatial::Axis;
+use crate::units::STANDARD_GRAVITY;
+
+/// A unit that a column may have instead of its own.
+struct Unit {
+    name: &'static str,
+    /// True value over the one that was read.
+    factor: f64,
+    log_prior: f64,
+    cure: Cure,
+    /// What to do instead.
+    or_else: Option<&'static str>,
+    /// How near to the factor the readings must come, as a ratio.
+    within: f64,
+}
+
+/// What to do with the column, by which number.
+#[derive(Clone, Copy)]
+enum Cure {
+    Multiply(&'static str),
+    Divide(&'static str),
+}
+
+impl Cure {
+    /// `multiply load_n by 1000`.
+    fn applied_to(self, what: &str) -> String {
+        match self {
+            Multiply(by) => format!("multiply {what} by {by}"),
+            Divide(by) => format!("divide {what} by {by}"),
+        }
+    }
+}
+
+/// The physics that remains may stand beside a unit's factor: a modulus may be 25 % off.
+pub const BESIDE: f64 = 1.25;
+/// Where a rod that is softer or stiffer comes near the factor itself, less may.
+const BESIDE_PHYSICS: f64 = 1.2;
+pub const HARDLY_BESIDE: f64 = 1.1;
+const VERY_NEAR: f64 = 1.05;
+
+const fn unit(name: &'static str, factor: f64, log_prior: f64, cure: Cure) -> Unit {
+    Unit { name, factor, log_prior, cure, or_else: None, within: BESIDE }
+}
+
+const POUND: f64 = 4.448_221_615_260_5;
+
+/// Instead of newtons.
+const FOR_NEWTONS: [Unit; 7] = [
+    Unit {
+        or_else: Some("name the column load_kg"),
+        ..unit("kilograms", STANDARD_GRAVITY, 0.0, Multiply("9.80665"))
+    },
+    unit("grams", 1e-3 * STANDARD_GRAVITY, -0.5, Multiply("0.00980665")),
+    Unit { within: BESIDE_PHYSICS, ..unit("pounds (lbf)", POUND, 0.0, Multiply("4.4482216")) },
+    Unit { within: HARDLY_BESIDE, ..unit("ounces (ozf)", POUND / 16.0, -2.0, Multiply("0.27801385")) },
+    unit("kilonewtons", 1e3, -2.0, Multiply("1000")),
+    unit("millinewtons", 1e-3, -1.5, Divide("1000")),
+    unit("newtons that were converted once more", 1.0 / STANDARD_GRAVITY, -0.5, Divide("9.80665")),
+];
+
+/// Instead of kilograms.
+const FOR_KILOGRAMS: [Unit; 4] = [
+    Unit {
+        or_else: Some("name the column load_n"),
+        ..unit("newtons", 1.0 / STANDARD_GRAVITY, 0.0, Divide("9.80665"))
+    },
+    unit("grams", 1e-3, -0.3, Divide("1000")),
+    unit("tonnes", 1e3, -2.0, Multiply("1000")),
+    unit("kilograms that were divided by g", STANDARD_GRAVITY, -1.5, Multiply("9.80665")),
+];
+
+/// Instead of micrometres.
+const FOR_MICROMETRES: [Unit; 7] = [
+    unit("millimetres", 1e3, 0.0, Multiply("1000")),
+    unit("inches", 25.4e3, -1.0, Multiply("25400")),
+    unit("thousandths of an inch (mil)", 25.4, -1.0, Multiply("25.4")),
+    unit("nanometres", 1e-3, -1.5, Divide("1000")),
+    unit("metres", 1e6, -1.0, Multiply("1000000")),
+    unit("centimetres", 1e4, -2.0, Multiply("10000")),
+    unit("hundredths of a millimetre", 10.0, -1.5, Multiply("10")),
+];
+
+/// Pounds for kilograms are within what a rod does: joints alone make some twice as soft as their
+/// pipes.
+const LIKE_A_ROD: [(&str, f64); 1] = [("pounds (lb)", 0.453_592_37)];
+
+/// Units of the loads, with their factors, that softer or stiffer rods look like.
+pub fn like_physics(column: LoadColumn) -> Vec<(&'static str, f64)> {
+    match column {
+        LoadColumn::Newtons => {
+            let near = FOR_NEWTONS.iter().filter(|unit| unit.within < BESIDE);
+            near.map(|unit| (unit.name, unit.factor)).collect()
+        }
+        LoadColumn::Kilograms => LIKE_A_ROD.to_vec(),
+    }
+}
+
+/// Units of the loads.
+pub(super) fn load_units(labels: &Labels, is_in_trials: bool) -> Vec<PossibleMistake> {
+    let (own, units): (_, &[Unit]) = match labels.load_column {
+        LoadColumn::Newtons => ("newtons", &FOR_NEWTONS),
+        LoadColumn::Kilograms => ("kilograms", &FOR_KILOGRAMS),
+    };
+    let column = load_column(labels.load_column);
+    let mut found = Vec::new();
+    for unit in units {
+        // loads along one axis cannot separate a pound from a compliant joint, nor can sensors
+        // along the loads only, unless it comes very near
+        let is_near_physics = unit.within < BESIDE && !is_in_trials;
+        let within = if is_near_physics && !labels.has_cross { VERY_NEAR } else { unit.within };
+        let of_axes = |axes: [bool; 3], location: Key, whose: &str| PossibleMistake {
+            effect: &UNIT_MISTAKE,
+            looks_like: format!("{location} looks like {}", unit.name),
+            observed: format!("{whose} are {}, not {own}: {}", unit.name, unit.cure.applied_to(column)),
+            or_else: unit.or_else,
+            location,
+            relabelling: Relabelling::load(axes, unit.factor),
+            log_prior: unit.log_prior,
+            estimates: vec![exact("factor", unit.factor)],
+            within,
+        };
+        if is_near_physics && labels.axes.len() < 2 {
+            continue;
+        }
+        found.push(of_axes(ALL, Key::new(column), "The loads"));
+        if labels.axes.len() > 1 && !is_near_physics {
+            for &axis in &labels.axes {
+                let whose = format!("The loads along {axis}");
+                let of_axis = of_axes(mask(&[axis]), Key::new(column).rows(axis_rows(axis)), &whose);
+                found.push(PossibleMistake {
+                    observed: format!("{} in these rows", of_axis.observed_in_all_rows()),
+                    or_else: None,
+                    log_prior: unit.log_prior + ONE_AXIS,
+                    ..of_axis
+                });
+            }
+        }
+    }
+    found
+}
+
+/// Units of the readings.
+pub(super) fn reading_units(labels: &Labels) -> Vec<PossibleMistake> {
+    let mut found = Vec::new();
+    for unit in &FOR_MICROMETRES {
+        let mut add = |axes: [bool; 3], channels: &[Axis], rows: Option<Axis>, log_prior: f64| {
+            let names = columns(channels);
+            let (verb, it) = if channels.len() == 1 { ("is", "it") } else { ("are", "them") };
+            let (under, location) = match rows {
+                Some(axis) => (format!(" under loads along {axis}"), Key::new(&names).rows(axis_rows(axis))),
+                None => (String::new(), Key::new(&names)),
+            };
+            let cure = unit.cure.applied_to(it);
+            found.push(PossibleMistake {
+                effect: &UNIT_MISTAKE,
+                looks_like: format!(
+                    "{location} {} like {}",
+                    if channels.len() == 1 { "looks" } else { "look" },
+                    unit.name
+                ),
+                observed: format!("{names}{under} {verb} in {}, not in micrometres: {cure}", unit.name),
+                or_else: None,
+                location,
+                relabelling: Relabelling::reading(axes, mask(channels), unit.factor),
+                log_prior: unit.log_prior + log_prior,
+                estimates: vec![exact("factor", unit.factor)],
+                within: unit.within,
+            });
+        };
+        add(ALL, &labels.channels, None, 0.0);
+        if labels.channels.len() > 1 {
+            labels.channels.iter().for_each(|&channel| add(ALL, &[channel], None, 0.0));
+        }
+        if labels.axes.len() > 1 && labels.has_cross {
+            for &axis in &labels.axes {
+                add(mask(&[axis]), &labels.channels, Some(axis), ONE_AXIS);
+            }
+        }
+    }
+    found
+}
+
+/// A decimal point that slipped, or a display in another range.
+pub(super) fn decimals(labels: &Labels) -> Vec<PossibleMistake> {
+    const DECIMALS: [(f64, f64, &str); 4] = [
+        (10.0, -1.0, "multiply them by 10"),
+        (0.1, -1.0, "divide them by 10"),
+        (100.0, -2.0, "multiply them by 100"),
+        (0.01, -2.0, "divide them by 100"),
+    ];
+    let mut found = Vec::new();
+    for (factor, log_prior, cure) in DECIMALS {
+        let size = if factor > 1.0 { "small" } else { "large" };
+        let times = if !(0.05..50.0).contains(&factor) { 100 } else { 10 };
+        let mut add = |location: Key, relabelling: Relabelling, whose: &str, log_prior: f64| {
+            found.push(PossibleMistake {
+                effect: &UNIT_MISTAKE,
+                looks_like: format!("{location} looks {times} times too {size}"),
+                observed: format!(
+                    "{whose} are {times} times too {size} (a decimal point, or another range): {cure}"
+                ),
+                or_else: None,
+                location,
+                relabelling,
+                log_prior,
+                estimates: vec![exact("factor", factor)],
+                within: HARDLY_BESIDE,
+            });
+        };
+        let (loads, of_all) = (Key::new(load_column(labels.load_column)), Relabelling::load(ALL, factor));
+        add(loads, of_all, "the loads", log_prior + UNUSUAL);
+        let mut add_readings = |channels: &[Axis]| {
+            let names = columns(channels);
+            let relabelling = Relabelling::reading(ALL, mask(channels), factor);
+            add(Key::new(&names), relabelling, &format!("the readings {names}"), log_prior);
+        };
+        add_readings(&labels.channels);
+        if labels.channels.len() > 1 {
+            labels.channels.iter().for_each(|&channel| add_readings(&[channel]));
+        }
+    }
+    found
+}

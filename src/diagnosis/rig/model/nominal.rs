@@ -1,0 +1,207 @@
+//! The numbers of rod and rig that are known to a standard uncertainty, and what each does to the
+//! readings.
+//!
+//! ```text
+//! column   u·∂(C·F)/∂x     by the beam model of the rod with x + u and x − u
+//! load     u·C·F           all loads by one scale
+//! sensor   u·C·F           of one channel
+//! station  u·∂(C·F)/∂s     every stated station of a load or of a sensor
+//! clamp    as l1: a clamp that is farther out leaves a shorter rod
+//! ```
+
+use nalgebra::{DMatrix, Matrix3};
+
+use crate::diagnosis::rig::mechanics::structure::responses;
+use crate::diagnosis::rig::recording::datum::Datum;
+use crate::error::Result;
+use crate::inference::NominalParameter;
+use crate::rig::readings::RigHeader;
+use crate::rod::{NominalNumber, Rod};
+use crate::spatial::Axis;
+use crate::units::MM;
+
+const PERCENT: f64 = 0.01;
+
+/// What a number that is known to a standard uncertainty is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum KnownNumber {
+    /// A number of the rod's file.
+    OfRod(NominalNumber),
+    /// The scale of all loads.
+    LoadScale,
+    /// The scale of the sensor of a channel.
+    SensorScale(Axis),
+    /// A station that the readings state, m.
+    Station(f64),
+    /// A constant of a law of the rod's file: numbers of both.
+    LawConstant(usize, usize),
+}
+
+/// All such numbers, with what each does.
+pub struct KnownNumbers {
+    pub known: Vec<KnownNumber>,
+    pub parameters: Vec<NominalParameter>,
+    /// For each of them its column.
+    pub columns: DMatrix<f64>,
+    /// What the rod as it bends would show, m.
+    pub deflections: Vec<f64>,
+}
+
+/// The numbers of `rod`, their columns by the rod as it bends (`bent`), and what that one would
+/// show, m; `stations` are the load and read stations of a datum on a rod.
+pub fn all(
+    data: &[Datum],
+    rod: &Rod,
+    bent: &Rod,
+    header: &RigHeader,
+    stations: &dyn Fn(&Rod, &Datum) -> (f64, f64),
+) -> Result<KnownNumbers> {
+    let (mut known, mut parameters) = (Vec::new(), Vec::new());
+    let mut columns: Vec<Vec<f64>> = Vec::new();
+    let mut add = |number: KnownNumber, parameter: NominalParameter, column: Vec<f64>| {
+        if column.iter().any(|value| *value != 0.0) && column.iter().all(|value| value.is_finite()) {
+            known.push(number);
+            parameters.push(parameter);
+            columns.push(column);
+        }
+    };
+    let pairs = Pairs::new(data, bent, stations);
+    let deflections = match bent == rod {
+        true => data.iter().map(|d| d.predicted).collect(),
+        false => pairs.read(data, &responses(bent, &pairs.on(bent))?),
+    };
+    let as_bent = bent.nominal_numbers();
+    for nominal in rod.nominal_numbers() {
+        let u = nominal.standard_uncertainty;
+        let of_bent = as_bent.iter().find(|own| own.number == nominal.number).unwrap_or(&nominal);
+        let by = of_bent.standard_uncertainty;
+        let Some(changed) = [1.0, -1.0]
+            .map(|sign| pairs.predicted(data, &bent.with(&nominal.number, of_bent.value + sign * by)))
+            .into_iter()
+            .collect::<Option<Vec<_>>>()
+        else {
+            continue;
+        };
+        let column = changed[0].iter().zip(&changed[1]).map(|(more, less)| 0.5 * (more - less));
+        let (unit, si, value) = nominal.for_people();
+        let name = nominal.number.to_string();
+        let parameter = NominalParameter { name, unit, si, value, standard_uncertainty: u };
+        add(KnownNumber::OfRod(nominal.number), parameter, column.collect());
+    }
+    let scale = |name: String, standard_uncertainty: f64| NominalParameter {
+        name,
+        unit: "%",
+        si: PERCENT,
+        value: 1.0,
+        standard_uncertainty,
+    };
+    let (loads, sensors) = (header.load_scale, header.sensor_scale);
+    let column = deflections.iter().map(|bent| loads * bent).collect();
+    add(KnownNumber::LoadScale, scale("scale of the loads".into(), loads), column);
+    for channel in Axis::ALL {
+        let of_channel = |(d, bent): (&Datum, &f64)| if d.channel == channel { sensors * bent } else { 0.0 };
+        let parameter = scale(format!("scale of sensor d{channel}"), sensors);
+        let column = data.iter().zip(&deflections).map(of_channel).collect();
+        add(KnownNumber::SensorScale(channel), parameter, column);
+    }
+    let length = rod.standard_uncertainty.length;
+    for station in pairs.stated(data) {
+        let Some(column) = pairs.moved(data, bent, station, length) else { continue };
+        let name = format!("station {:.1} mm", station / MM);
+        let (unit, si) = ("mm", MM);
+        let parameter = NominalParameter { name, unit, si, value: station, standard_uncertainty: length };
+        add(KnownNumber::Station(station), parameter, column);
+    }
+    let columns = DMatrix::from_fn(data.len(), columns.len(), |i, k| columns[k][i]);
+    Ok(KnownNumbers { known, parameters, columns, deflections })
+}
+
+/// Which pair of load and read station each datum has.
+struct Pairs<'a> {
+    of_datum: Vec<usize>,
+    first: Vec<usize>,
+    data: &'a [Datum],
+    stations: &'a dyn Fn(&Rod, &Datum) -> (f64, f64),
+}
+
+impl<'a> Pairs<'a> {
+    fn new(data: &'a [Datum], rod: &Rod, stations: &'a dyn Fn(&Rod, &Datum) -> (f64, f64)) -> Pairs<'a> {
+        let bits = |d: &Datum| {
+            let (load, read) = stations(rod, d);
+            (load.to_bits(), read.to_bits())
+        };
+        let of_datum = crate::diagnosis::rig::numbering::numbered(data.iter().map(bits));
+        let mut first = Vec::new();
+        for (i, &number) in of_datum.iter().enumerate() {
+            if number == first.len() {
+                first.push(i);
+            }
+        }
+        Pairs { of_datum, first, data, stations }
+    }
+
+    /// Load and read station of each pair on another rod, m.
+    fn on(&self, rod: &Rod) -> Vec<(f64, f64)> {
+        self.first.iter().map(|&i| (self.stations)(rod, &self.data[i])).collect()
+    }
+
+    /// What another rod would show; `None` where the beam model refuses it.
+    fn predicted(&self, data: &[Datum], rod: &Rod) -> Option<Vec<f64>> {
+        let parts = responses(rod, &self.on(rod)).ok()?;
+        Some(self.read(data, &parts))
+    }
+
+    fn read(&self, data: &[Datum], parts: &[Matrix3<f64>]) -> Vec<f64> {
+        let entry = |(d, &pair): (&Datum, &usize)| {
+            d.elastic(parts[pair][(d.channel.index(), d.direction.axis.index())])
+        };
+        data.iter().zip(&self.of_datum).map(entry).collect()
+    }
+
+    /// Stations that the readings state, m.
+    fn stated(&self, data: &[Datum]) -> Vec<f64> {
+        let mut stations: Vec<f64> =
+            data.iter().flat_map(|d| [d.load_station, d.read_station]).flatten().collect();
+        stations.sort_by(f64::total_cmp);
+        stations.dedup();
+        stations
+    }
+
+    /// The column of a station that is off by its standard uncertainty.
+    fn moved(&self, data: &[Datum], rod: &Rod, station: f64, by: f64) -> Option<Vec<f64>> {
+        let at = |sign: f64| {
+            let moved = |s: f64| if s == station { (s + sign * by).clamp(0.0, rod.length()) } else { s };
+            let pairs: Vec<(f64, f64)> =
+                self.on(rod).into_iter().map(|(load, read)| (moved(load), moved(read))).collect();
+            Some(self.read(data, &responses(rod, &pairs).ok()?))
+        };
+        let (more, less) = (at(1.0)?, at(-1.0)?);
+        Some(more.iter().zip(&less).map(|(more, less)| 0.5 * (more - less)).collect())
+    }
+}
+
+/// A rod whose numbers are all exact has none of its own.
+#[cfg(test)]
+mod tests {
+    use crate::diagnosis::rig::RigModel;
+    use crate::rig::readings::Readings;
+    use crate::rod::{NominalNumber, Rod};
+
+    #[test]
+    fn a_column_is_the_difference_to_the_rod_with_another_number() {
+        let rod = Rod::from_toml("rod", include_str!("../../../../rods/5.toml")).unwrap();
+        let text = "axis,load_n,dy_um,dz_um\ny,10,400,\ny,20,800,\nz,20,,800\n";
+        let readings = Readings::from_text("f", text).unwrap();
+        let (model, evidence) = RigModel::new(&readings, Some(&rod)).unwrap();
+        let k = evidence.nominal_numbers.iter().position(|n| n.name == "E of steel").unwrap();
+        let number = NominalNumber::YoungsModulus("steel".into());
+        let nominal = rod.nominal_numbers().into_iter().find(|n| n.number == number).unwrap();
+        let softer = rod.with(&number, nominal.value + nominal.standard_uncertainty);
+        let (changed, _) = RigModel::new(&readings, Some(&softer)).unwrap();
+        for (i, datum) in changed.data().iter().enumerate() {
+            let difference = datum.predicted - model.data()[i].predicted;
+            let column = evidence.nominal[(i, k)];
+            assert!((column / difference - 1.0).abs() < 0.03, "{column} for {difference}");
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! The data of a recording: one for each offset that was measured, with the run through the loads
+//! that it belongs to.
+//!
+//! Data stand in the order in which they were recorded, those of one instant by station and
+//! channel, so that rows in another order, one row per station and one row per channel are the same
+//! recording: see [`chronicle`](super::chronicle).
+
+use std::collections::HashMap;
+
+use super::chronicle::{Chronicle, Motion};
+use crate::diagnosis::rig::numbering::numbered;
+use crate::inference::RunName;
+use crate::rig::readings::{Axis, Direction, Driven, Phase, Reading, Readings};
+
+/// One measured offset.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Datum {
+    /// Row in the file, from 1: rows of readings only, without the header, comments and blank
+    /// lines.
+    pub row: usize,
+    /// Line in the file, from 1.
+    pub line: usize,
+    /// Direction of the load in {T}.
+    pub direction: Direction,
+    /// Axis of the offset in {T}.
+    pub channel: Axis,
+    /// Nominal magnitude of the load, N.
+    pub load: f64,
+    /// Whether the load was reached by loading or by unloading; where no row says so and the loads
+    /// go up and down, by the direction of motion.
+    pub phase: Option<Phase>,
+    /// The largest load that hung before in its run, the same way, N, of a load that was reached by
+    /// unloading from there; infinity of all others.
+    pub(in crate::diagnosis::rig) peak: f64,
+    /// Which way the load or the displacement went, where that is known without a phase.
+    pub(in crate::diagnosis::rig) motion: Option<Motion>,
+    /// Name of the session, where the file has one.
+    pub session: Option<String>,
+    /// Number of the session, from 0.
+    pub session_number: usize,
+    /// Name of the trial, where the file has one.
+    pub trial: Option<String>,
+    /// Number of the trial, from 0, across axes: the runs of one name, else the k-th run of each
+    /// axis.
+    pub trial_number: usize,
+    /// Number of the run, from 0: one trial of a session along one axis, from one zeroing to the
+    /// next.
+    pub run: usize,
+    /// Number of the instant in the recording, from 0: data of one instant share it.
+    pub order: usize,
+    /// Time of the reading, s.
+    pub time: Option<f64>,
+    /// When this load was hung, s, on the clock of `time`.
+    pub loaded_at: Option<f64>,
+    /// Temperature, °C.
+    pub temperature: Option<f64>,
+    /// Arc length from the flange to the load, m; `None`: the tip.
+    pub load_station: Option<f64>,
+    /// Arc length from the flange to the sensor, m; `None`: the tip.
+    pub read_station: Option<f64>,
+    /// What is compared with the model, m: the offset that was read, or, of a load that was
+    /// measured under an imposed displacement, the load times `Imposed::per_newton`.
+    pub measured: f64,
+    /// The same as the base model predicts it, m; 0 without a rod.
+    pub predicted: f64,
+    /// The displacement that was imposed, where the load is what was measured.
+    pub imposed: Option<Imposed>,
+}
+
+/// A displacement that was imposed along the axis of the load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Imposed {
+    /// Along the positive axis, m.
+    pub displacement: f64,
+    /// What a newton of the measured load counts, m/N: one number for all loads of a recording, its
+    /// largest displacement over its largest load.
+    pub per_newton: f64,
+}
+
+impl Datum {
+    /// The nominal load along the positive axis, N.
+    pub fn signed_load(&self) -> f64 {
+        f64::from(self.direction.sign) * self.load
+    }
+
+    /// What was set: the load along the positive axis (N), or the displacement that was imposed
+    /// (m).
+    pub fn drive(&self) -> f64 {
+        self.imposed.map_or(self.signed_load(), |imposed| imposed.displacement)
+    }
+
+    /// What a linear rod of this compliance (m/N) shows: the offset C·F, or the load u/C as
+    /// [`Datum::measured`] counts it.
+    pub(in crate::diagnosis::rig) fn elastic(&self, compliance: f64) -> f64 {
+        match self.imposed {
+            None => compliance * self.signed_load(),
+            Some(imposed) if compliance != 0.0 => imposed.per_newton * imposed.displacement / compliance,
+            Some(_) => 0.0,
+        }
+    }
+
+    /// `row 17 dy`.
+    pub fn name(&self) -> String {
+        format!("row {} d{}", self.row, self.channel)
+    }
+
+    /// What names its run among those of its axis; nothing where the file has no names.
+    pub(in crate::diagnosis::rig) fn run_name(&self) -> Option<RunName> {
+        let session = self.session.as_ref().map(|session| format!("session {session}"));
+        let name = match (self.trial.clone(), session) {
+            (Some(trial), Some(session)) => Some(format!("{trial}, {session}")),
+            (trial, session) => trial.or(session),
+        };
+        name.map(RunName::Trial)
+    }
+
+    /// A phase that is not stated counts as loading.
+    pub(in crate::diagnosis::rig) fn is_unloading(&self) -> bool {
+        self.phase == Some(Phase::Unload)
+    }
+
+    /// Where the load hangs and the sensor stands; NaN is the tip.
+    pub(in crate::diagnosis::rig) fn stations(&self) -> [u64; 2] {
+        [self.load_station, self.read_station].map(|station| station.unwrap_or(f64::NAN).to_bits())
+    }
+
+    /// The sensor: its channel and its place.
+    pub(in crate::diagnosis::rig) fn sensor(&self) -> (Axis, u64) {
+        (self.channel, self.stations()[1])
+    }
+
+    /// What is one straight line of an ideal rod: axis, channel and places.
+    pub(in crate::diagnosis::rig) fn line_key(&self) -> (Axis, Axis, [u64; 2]) {
+        (self.direction.axis, self.channel, self.stations())
+    }
+}
+
+/// One datum for each offset of the rows of weights that were hung, in the order of recording;
+/// nothing predicted yet.
+pub fn all(rows: &[Reading]) -> Vec<Datum> {
+    of_rows(rows, Driven::Load)
+}
+
+/// The data of a recording, in the order of recording; nothing predicted yet.
+pub fn recorded(readings: &Readings) -> Vec<Datum> {
+    let mut data = of_rows(&readings.rows, readings.header.driven);
+    if readings.header.driven == Driven::Displacement {
+        impose(&mut data);
+    }
+    data
+}
+
+/// Makes the load what was measured of all data along their loads, and the offset what was imposed.
+fn impose(data: &mut [Datum]) {
+    let is_along = |datum: &Datum| datum.channel == datum.direction.axis;
+    let largest = |value: &dyn Fn(&Datum) -> f64| {
+        data.iter().filter(|d| is_along(d)).fold(0.0, |most: f64, datum| most.max(value(datum)))
+    };
+    let (load, displacement) = (largest(&|d| d.load), largest(&|d| d.measured.abs()));
+    if load == 0.0 || displacement == 0.0 {
+        return;
+    }
+    let per_newton = displacement / load;
+    for datum in data.iter_mut().filter(|datum| is_along(datum)) {
+        datum.imposed = Some(Imposed { displacement: datum.measured, per_newton });
+        datum.measured = per_newton * datum.signed_load();
+        if datum.motion.is_none() {
+            let away = if datum.is_unloading() { -1.0 } else { 1.0 };
+            let direction = away * if datum.drive() == 0.0 { 0.0 } else { datum.drive().signum() };
+            let phase = datum.phase.unwrap_or(Phase::Load);
+            datum.motion = Some(Motion { direction, cycle: 0, phase });
+        }
+    }
+}
+
+fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {
+    let chronicle = Chronicle::of(rows, driven);
+    let of_row = |(index, row): (usize, &Reading)| {
+        let (row, own) = (row.clone(), chronicle.rows[index]);
+        Axis::ALL.into_iter().filter_map(move |channel| {
+            Some(Datum {
+                row: index + 1,
+                line: row.line,
+                direction: row.direction,
+                channel,
+                load: row.load,
+                phase: row.phase.or(own.motion.map(|motion| motion.phase)),
+                peak: f64::INFINITY,
+                motion: own.motion,
+                session: row.session.clone(),
+                session_number: own.session,
+                trial: row.trial.clone(),
+                trial_number: own.trial,
+                run: own.run,
+                order: own.place,
+                time: row.time,
+                loaded_at: row.loaded_at,
+                temperature: row.temperature,
+                load_station: row.load_station,
+                read_station: row.read_station,
+                measured: row.offset[channel.index()]?,
+                predicted: 0.0,
+                imposed: None,
+            })
+        })
+    };
+    let mut data: Vec<Datum> = rows.iter().enumerate().flat_map(of_row).collect();
+    let along = |station: Option<f64>| station.map_or(u64::MAX, f64::to_bits);
+    data.sort_by_key(|datum| {
+        let stations = (along(datum.load_station), along(datum.read_station));
+        (datum.order, datum.run, stations, datum.channel.index(), datum.row)
+    });
+    let runs = numbered(data.iter().map(|datum| datum.run));
+    let orders = numbered(data.iter().map(|datum| datum.order));
+    for ((datum, run), order) in data.iter_mut().zip(runs).zip(orders) {
+        (datum.run, datum.order) = (run, order);
+    }
+    find_peaks(&mut data);
+    data
+}
+
+/// Fills in from which load each one was reached by unloading.
+fn find_peaks(data: &mut [Datum]) {
+    let mut peaks: HashMap<(usize, Direction), f64> = HashMap::new();
+    for datum in data {
+        let peak = peaks.entry((datum.run, datum.direction)).or_default();
+        if datum.is_unloading() && datum.load < *peak {
+            datum.peak = *peak;
+        }
+        *peak = peak.max(datum.load);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn runs_of(text: &str) -> Vec<(usize, usize)> {
+        let data = all(&Readings::from_text("f", text).unwrap().rows);
+        data.iter().map(|d| (d.run, d.trial_number)).collect()
+    }
+
+    #[test]
+    fn a_datum_is_an_offset_and_blank_cells_are_none() {
+        let text = "axis,load_n,dx_um,dz_um\n# a comment\ny,5,1,\nz,5,2,3\n\nz,6,,4\n";
+        let data = all(&Readings::from_text("f", text).unwrap().rows);
+        let names: Vec<String> = data.iter().map(Datum::name).collect();
+        assert_eq!(names, ["row 1 dx", "row 2 dx", "row 2 dz", "row 3 dz"]);
+        assert_eq!(data[3].line, 6);
+    }
+
+    #[test]
+    fn a_load_on_the_way_down_knows_from_where() {
+        let text =
+            "axis,load_n,trial,phase,dy_um\ny,5,a,load,0\ny,9,a,load,0\ny,5,a,unload,0\ny,9,b,unload,0\n";
+        let data = all(&Readings::from_text("f", text).unwrap().rows);
+        let peaks: Vec<f64> = data.iter().map(|d| d.peak).collect();
+        assert_eq!(peaks, [f64::INFINITY, f64::INFINITY, 9.0, f64::INFINITY]);
+    }
+
+    #[test]
+    fn a_named_trial_is_one_run_along_each_axis() {
+        let text = "axis,load_n,trial,dy_um\ny,1,a,0\ny,2,a,0\nz,1,a,0\ny,1,b,0\nz,1,b,0\nz,2,b,0\n";
+        assert_eq!(runs_of(text), [(0, 0), (0, 0), (1, 0), (2, 1), (3, 1), (3, 1)]);
+    }
+
+    #[test]
+    fn without_names_a_run_ends_where_a_load_comes_again() {
+        let text = "axis,load_n,phase,dy_um,dz_um
+y,1,load,0,
+y,1,load,0,
+y,2,load,0,
+y,1,unload,0,
+z,1,load,0,
+z,1,load,,0
+y,1,load,0,
+y,2,load,0,
+z,2,load,0,
+z,1,load,0,
+";
+        let expected = [(0, 0), (0, 0), (0, 0), (0, 0), (1, 0), (1, 0), (2, 1), (2, 1), (1, 0), (3, 1)];
+        assert_eq!(runs_of(text), expected);
+    }
+}

@@ -32,9 +32,11 @@ impl Answer {
     fn __reduce__<'py>(
         &self,
         py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>, String, Vec<(String, Bound<'py, PyBytes>)>, u8))> {
+    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>, String, Vec<(String, Bound<'py, PyBytes>)>, u8))>
+    {
         let own = &self.0;
-        let report = rmp_serde::to_vec(&own.report).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let report =
+            rmp_serde::to_vec(&own.report).map_err(|error| PyValueError::new_err(error.to_string()))?;
         let files = own.files.iter().map(|(name, content)| (name.clone(), PyBytes::new(py, content)));
         let parts = (PyBytes::new(py, &report), own.json.to_string(), files.collect(), own.status);
         Ok((py.get_type::<Answer>().getattr("restored")?, parts))

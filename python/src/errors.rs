@@ -62,7 +62,8 @@ pub fn raised(py: Python<'_>, mut error: Error) -> PyErr {
         _ => "numerical",
     };
     let known = |number: usize| (number > 0).then_some(number);
-    let words = (kind, error.to_string(), file, known(line), known(column), found, expected, error.hint(), errno);
+    let words =
+        (kind, error.to_string(), file, known(line), known(column), found, expected, error.hint(), errno);
     let exception = py.import("rodcal._errors").and_then(|module| module.getattr("raised")?.call1(words));
     exception.map_or_else(|failed| failed, PyErr::from_value)
 }

@@ -132,10 +132,7 @@ fn names(campaign: &Campaign) -> FileNames {
 }
 
 /// Robot, rod and readings as they are, for a corrected campaign in another folder.
-fn copies(
-    campaign: &Campaign,
-    content: &dyn Fn(&str) -> Result<Vec<u8>>,
-) -> Result<Vec<(String, Vec<u8>)>> {
+fn copies(campaign: &Campaign, content: &dyn Fn(&str) -> Result<Vec<u8>>) -> Result<Vec<(String, Vec<u8>)>> {
     let names = names(campaign);
     let mut copies = Vec::new();
     if let (Some(name), Some(file)) = (names.effects, &campaign.effects_file) {

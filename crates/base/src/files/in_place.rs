@@ -84,10 +84,8 @@ pub(super) fn pending(directory: &Path) -> crate::error::Result<Option<Marker>> 
     }
     let marker = Marker::read(&begun)?;
     let replaced = std::fs::read_to_string(begun.join(REPLACED)).unwrap_or_default();
-    let replaced: BTreeMap<&str, &str> = replaced
-        .lines()
-        .filter_map(|line| line.split_once("  ").map(|(hash, name)| (name, hash)))
-        .collect();
+    let replaced: BTreeMap<&str, &str> =
+        replaced.lines().filter_map(|line| line.split_once("  ").map(|(hash, name)| (name, hash))).collect();
     for name in &left {
         let Some(name) = name.to_str() else { return wrong("rodcal did not write it") };
         let new = Standing::at(&begun.join(name))?;

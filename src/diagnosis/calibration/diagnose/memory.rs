@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::robot::Motion;
 
 /// Bytes beyond which a diagnosis is refused.
-pub const MEMORY_LIMIT: f64 = 4e9;
+pub const MEMORY_LIMIT: f64 = 2e9;
 /// Numbers for each pose: of a joint's gear and approach; of a pair of joints and of a link by a
 /// pair of them; of all else.
 const OF_JOINT: f64 = 1300.0;

@@ -31,13 +31,14 @@ mod predict;
 mod setup;
 mod standard_uncertainty;
 mod statics;
+mod structure;
 mod uncertainty;
 mod urdf;
 mod write;
 
 pub use crate::units::Unit;
 pub use calibrated::CalibratedRange;
-pub use effect::Effect;
+pub use effect::{Effect, TorquePower};
 pub use effects_file::{corrections_csv, corrections_from_csv};
 pub use file::is_urdf;
 pub use kinematics::{JointFrames, Kinematics};
@@ -48,6 +49,7 @@ pub use predict::{PredictedTip, PredictionQuery};
 pub use setup::Setup;
 pub use standard_uncertainty::StandardUncertainty;
 pub use statics::Loads;
+pub use structure::{Pull, across};
 pub use uncertainty::Uncertainty;
 pub use urdf::Written;
 
@@ -76,7 +78,7 @@ pub struct Robot {
     pub joints: Vec<Joint>,
     /// {T} in the last joint's distal frame. The identity for a robot given as a table.
     pub flange: Pose,
-    /// Errors and deflections of the joints that their geometry does not describe.
+    /// Errors and deflections that geometry does not describe.
     pub effects: Vec<Effect>,
     /// What else geometry does not describe, as formulas.
     pub laws: Vec<RobotLaw>,

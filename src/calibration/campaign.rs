@@ -22,7 +22,7 @@ pub use write::FileNames;
 use nalgebra::Vector3;
 
 use crate::rig::readings::Readings;
-use crate::robot::{Parameter, Robot};
+use crate::robot::{Body, Parameter, Robot};
 use crate::rod::Rod;
 use crate::spatial::Pose;
 
@@ -176,6 +176,17 @@ impl Campaign {
         self.robot.joints.len().checked_sub(1).filter(|_| is_guess).map(Parameter::Theta)
     }
 
+    /// Adds to the joint values as they were read what the moves between the poses add, by the
+    /// robot's file. The rod hangs on the flange; poses for validation have none.
+    pub(crate) fn take_up_moves(&mut self) {
+        let rod = self.rod.as_ref();
+        let payload = rod.map(|rod| Body { mass: rod.mass(), centre: rod.centre_of_mass() });
+        self.measurements.take_up_moves(&self.robot, payload);
+        if let Some(validation) = &mut self.validation {
+            validation.take_up_moves(&self.robot, None);
+        }
+    }
+
     /// Parameters of which the robot's drawing says nothing: those that the user knows, and the
     /// guessed one.
     pub(crate) fn not_drawn(&self) -> Vec<Parameter> {
@@ -240,10 +251,10 @@ impl Recording {
     }
 
     /// Adds to the joint values as they were read what the moves between the poses add, by the
-    /// robot's file.
-    pub fn take_up_moves(&mut self, robot: &Robot) {
+    /// robot's file, with this payload on its flange.
+    pub fn take_up_moves(&mut self, robot: &Robot, payload: Option<Body>) {
         let read = self.joints_read.take().unwrap_or_else(|| self.joint_values.clone());
-        self.joint_values = robot.after_moves(&read);
+        self.joint_values = robot.after_moves_with(payload, &read);
         self.joints_read = robot.has_moves().then_some(read);
     }
 

@@ -171,8 +171,8 @@ impl Compensation {
         Some((most, beyond.into_iter().map(farthest).collect()))
     }
 
-    /// Fills in deflection and torque of every row for the present `setup`; gives the largest
-    /// change of a deflection, m.
+    /// Fills in deflection (of rod, links and base) and torque of every row for the present
+    /// `setup`; gives the largest change of a deflection, m.
     pub(super) fn update(&self, setup: &Setup, recording: &Recording, pass: &mut Pass) -> f64 {
         let robot = setup.robot;
         let n = recording.joint_count;
@@ -186,8 +186,9 @@ impl Compensation {
             let loads = Loads { gravity, payload: self.payload, tip_force };
             kinematics.torques(&loads, torque);
             let displaced = self.displaced.get(row).copied().unwrap_or_default();
+            let structure = kinematics.structural_deflection(&loads);
             let deflection = self.deflection(&kinematics, &gravity, &tip_force)
-                + kinematics.flange.rotation.tr_mul(&displaced);
+                + kinematics.flange.rotation.tr_mul(&(displaced + structure));
             change = change.max((deflection - pass.deflection[row]).norm());
             pass.deflection[row] = deflection;
         }

@@ -157,7 +157,7 @@ pub(super) fn validate_from(
     let mut kinematics = Kinematics::new(&setup);
     let tips: Vec<Vector3<f64>> = (0..recording.len())
         .map(|row| {
-            kinematics.update(recording.joints(row), &pass.torque[row * n..][..n]);
+            pass.deflect(&mut kinematics, recording, row);
             kinematics.tip
         })
         .collect();

@@ -42,7 +42,7 @@ pub use self::diagnose::memory::{MEMORY_LIMIT, check_memory, memory_needed};
 pub use self::laws::textbook::remark;
 pub use self::model::CalibrationModel;
 pub use self::model::gear::{Curve, Gear};
-pub use self::model::law::{Course, Frame, Law, Power, RodLoad, TakenUp};
+pub use self::model::law::{Course, Frame, Law, RodLoad, TakenUp};
 pub use self::write_back::apply::{Applied, apply};
 pub use self::write_back::destination::law_destination;
 pub use diagnose::{CalibrationDiagnosis, Happened, diagnose_as_recorded, diagnose_calibrated};

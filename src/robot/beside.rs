@@ -85,7 +85,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::robot::{CalibratedRange, Hayati, Joint, Motion, Parameter, Tip};
+    use crate::robot::{CalibratedRange, Hayati, Joint, Motion, Parameter, Tip, TorquePower};
 
     #[test]
     fn what_is_written_beside_a_urdf_is_read_again() {
@@ -99,6 +99,11 @@ mod tests {
             Effect::Weight { joint: 0, at: Some(1), per_metre: 1e-3 },
             Effect::Weight { joint: 0, at: None, per_metre: 2e-3 },
             Effect::Compliance { joint: 1, per_nm: 1e-5 },
+            Effect::NonlinearStiffness { joint: 0, power: TorquePower::Square, coefficient: 3e-9 },
+            Effect::NonlinearStiffness { joint: 1, power: TorquePower::Cube, coefficient: -2e-11 },
+            Effect::LinkFlexibility { joint: 1, per_nm: 2e-6 },
+            Effect::GravityTilt { per_nm: 4e-6 },
+            Effect::Friction { joint: 1, per_nm: 6e-6 },
         ];
         arm.tip = Some(Tip { at: [0.0, 0.0, 0.25].into(), sd: Some(5e-5) });
         arm.calibrated = Some(CalibratedRange { joints: vec![(-0.5, 0.5), (0.25, 1.0)], sd: 1e-5 });
@@ -108,7 +113,7 @@ mod tests {
         let mut again = bare.clone();
         again.add_beside("effects.toml", &text).unwrap();
         assert_eq!(again.beside_to_toml(&["said".to_owned()]), text);
-        assert_eq!((again.effects.len(), again.tip.is_some()), (6, true));
+        assert_eq!((&again.effects, again.tip.is_some()), (&arm.effects, true));
         let range = again.calibrated.unwrap();
         assert!((range.joints[1].1 - 1.0).abs() < 1e-12 && (range.sd - 1e-5).abs() < 1e-15);
         let message = |text: &str| bare.clone().add_beside("e.toml", text).unwrap_err().to_string();

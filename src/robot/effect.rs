@@ -1,4 +1,5 @@
-//! Joint errors that geometry does not describe: how much farther a joint turns than it reads.
+//! Errors that geometry does not describe: how much farther a joint turns than it reads, and what
+//! bends besides the joints.
 //!
 //! ```text
 //! transmission_error   a·sin(n·q) + b·cos(n·q), or a table over q: linear between its rows,
@@ -7,11 +8,17 @@
 //! backlash             ½·b·sign(τ)
 //! wrist_coupling       k·q of another joint
 //! joint_compliance     c·τ
+//! joint_nonlinear_stiffness  k₂·τ|τ| or k₃·τ³, beside the compliance
 //! weight               c·(horizontal lever of a frame about the joint): the joint deflects under a
 //!                      weight there that nobody knows
+//! link_flexibility     the link before the joint bends: all beyond turns by k·M⊥ about the joint's
+//!                      origin, M⊥ the moment of what pulls beyond, without its part about the axis
+//! gravity_tilt         the base tilts: all turns by k·Mₕ about the origin of {0}, Mₕ the horizontal
+//!                      part of the moment there
 //! ```
 
-/// An error of a joint; what follows the move before is in `moves.rs`. Joints count from 0.
+/// An error of a joint, a link or the base; what follows the move before is in `moves.rs`, what
+/// bends in `structure.rs`. Joints count from 0.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Effect {
@@ -54,6 +61,14 @@ pub enum Effect {
         /// The whole gap, rad.
         play: f64,
     },
+    /// Friction that grows with the joint's load and keeps its drive wound up to the side that it
+    /// was driven to.
+    Friction {
+        /// The joint.
+        joint: usize,
+        /// Angle between the two directions of approach per torque, rad/(N·m).
+        per_nm: f64,
+    },
     /// Angles that were read before the arm had settled.
     Lag {
         /// The joint; `None` for all.
@@ -66,6 +81,27 @@ pub enum Effect {
         /// The joint.
         joint: usize,
         /// c, rad/(N·m).
+        per_nm: f64,
+    },
+    /// A joint whose deflection is out of proportion to its torque.
+    NonlinearStiffness {
+        /// The joint.
+        joint: usize,
+        /// Which power of the torque.
+        power: TorquePower,
+        /// k₂, rad/(N·m)², or k₃, rad/(N·m)³.
+        coefficient: f64,
+    },
+    /// A link that bends across the axis of the joint beyond it.
+    LinkFlexibility {
+        /// The joint beyond it.
+        joint: usize,
+        /// k, rad/(N·m).
+        per_nm: f64,
+    },
+    /// A base that tilts under the arm.
+    GravityTilt {
+        /// k, rad/(N·m).
         per_nm: f64,
     },
     /// A joint that deflects under an unknown weight at a frame beyond it.
@@ -88,18 +124,42 @@ pub enum Effect {
     },
 }
 
+/// Power of the torque that a joint deflects with, besides the first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TorquePower {
+    /// τ|τ|.
+    Square,
+    /// τ³.
+    Cube,
+}
+
+impl TorquePower {
+    /// Of a torque.
+    pub fn of(self, torque: f64) -> f64 {
+        match self {
+            TorquePower::Square => torque * torque.abs(),
+            TorquePower::Cube => torque.powi(3),
+        }
+    }
+}
+
 impl Effect {
-    /// The joint that it turns; `None` for all.
+    /// The joint that it turns, or whose link it bends; `None` for all.
     pub fn joint(&self) -> Option<usize> {
         match self {
             Effect::Lag { joint, .. } => *joint,
+            Effect::GravityTilt { .. } => None,
             Effect::Harmonic { joint, .. }
             | Effect::Table { joint, .. }
             | Effect::EncoderScale { joint, .. }
             | Effect::Backlash { joint, .. }
             | Effect::PlayByApproach { joint, .. }
+            | Effect::Friction { joint, .. }
             | Effect::Weight { joint, .. }
             | Effect::Compliance { joint, .. }
+            | Effect::NonlinearStiffness { joint, .. }
+            | Effect::LinkFlexibility { joint, .. }
             | Effect::Coupling { joint, .. } => Some(*joint),
         }
     }
@@ -110,8 +170,12 @@ impl Effect {
             Effect::Harmonic { .. } | Effect::Table { .. } | Effect::EncoderScale { .. } => true,
             Effect::Backlash { .. }
             | Effect::PlayByApproach { .. }
+            | Effect::Friction { .. }
             | Effect::Lag { .. }
             | Effect::Compliance { .. }
+            | Effect::NonlinearStiffness { .. }
+            | Effect::LinkFlexibility { .. }
+            | Effect::GravityTilt { .. }
             | Effect::Weight { .. }
             | Effect::Coupling { .. } => false,
         }
@@ -120,12 +184,33 @@ impl Effect {
     /// True where the move that led to a pose matters.
     pub fn follows_moves(&self) -> bool {
         match self {
-            Effect::PlayByApproach { .. } | Effect::Lag { .. } => true,
+            Effect::PlayByApproach { .. } | Effect::Friction { .. } | Effect::Lag { .. } => true,
             Effect::Harmonic { .. }
             | Effect::Table { .. }
             | Effect::EncoderScale { .. }
             | Effect::Backlash { .. }
             | Effect::Compliance { .. }
+            | Effect::NonlinearStiffness { .. }
+            | Effect::LinkFlexibility { .. }
+            | Effect::GravityTilt { .. }
+            | Effect::Weight { .. }
+            | Effect::Coupling { .. } => false,
+        }
+    }
+
+    /// True of a link that bends and a base that tilts.
+    pub fn bends_structure(&self) -> bool {
+        match self {
+            Effect::LinkFlexibility { .. } | Effect::GravityTilt { .. } => true,
+            Effect::Harmonic { .. }
+            | Effect::Table { .. }
+            | Effect::EncoderScale { .. }
+            | Effect::Backlash { .. }
+            | Effect::PlayByApproach { .. }
+            | Effect::Friction { .. }
+            | Effect::Lag { .. }
+            | Effect::Compliance { .. }
+            | Effect::NonlinearStiffness { .. }
             | Effect::Weight { .. }
             | Effect::Coupling { .. } => false,
         }
@@ -155,9 +240,17 @@ impl Effect {
                 _ => 0.0,
             },
             Effect::Compliance { joint, per_nm } => torque.get(*joint).map_or(0.0, |torque| per_nm * torque),
+            Effect::NonlinearStiffness { joint, power, coefficient } => {
+                torque.get(*joint).map_or(0.0, |torque| coefficient * power.of(*torque))
+            }
             Effect::Coupling { from, fraction, .. } => fraction * q[*from],
-            // by the move before, and by where all frames are
-            Effect::PlayByApproach { .. } | Effect::Lag { .. } | Effect::Weight { .. } => 0.0,
+            // by the move before, by where all frames are, and what is no turn of a joint
+            Effect::PlayByApproach { .. }
+            | Effect::Friction { .. }
+            | Effect::Lag { .. }
+            | Effect::Weight { .. }
+            | Effect::LinkFlexibility { .. }
+            | Effect::GravityTilt { .. } => 0.0,
         }
     }
 }
@@ -188,5 +281,14 @@ mod tests {
         let play = Effect::Backlash { joint: 1, play: 2e-4 };
         assert_eq!([-3.0, 0.0, 5.0].map(|t| play.turn(&[0.0; 2], &[0.0, t])), [-1e-4, 0.0, 1e-4]);
         assert_eq!(Effect::Coupling { from: 0, joint: 1, fraction: 0.5 }.turn(&[4.0, 0.0], &[]), 2.0);
+    }
+
+    #[test]
+    fn a_stiffness_follows_a_power_of_the_torque_with_its_sign() {
+        for (power, turn) in [(TorquePower::Square, 4e-6), (TorquePower::Cube, 8e-6)] {
+            let effect = Effect::NonlinearStiffness { joint: 1, power, coefficient: 1e-6 };
+            assert_eq!([-2.0, 0.0, 2.0].map(|t| effect.turn(&[0.0; 2], &[9.0, t])), [-turn, 0.0, turn]);
+            assert_eq!(effect.turn(&[0.0; 2], &[]), 0.0);
+        }
     }
 }

@@ -4,7 +4,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{Effect, Robot};
+use super::{Effect, Robot, TorquePower};
 use crate::delimited::Table;
 use crate::error::Result;
 use crate::toml_text::{Number, TomlText, in_unit};
@@ -31,6 +31,8 @@ pub(super) struct RawEffect {
     at_joint: Option<Spanned<usize>>,
     urad_per_m: Option<Number>,
     urad_per_nm: Option<Number>,
+    urad_per_nm2: Option<Number>,
+    urad_per_nm3: Option<Number>,
 }
 
 /// An effect of a robot with so many joints.
@@ -45,6 +47,14 @@ pub(super) fn read(toml: &TomlText, spanned: &Spanned<RawEffect>, joints: usize)
     let joint = raw.joint.as_ref().map(|joint| number_of("effect.joint", joint)).transpose()?;
     if let ("readback_lag", Some(fraction)) = (raw.name.get_ref().as_str(), &raw.fraction) {
         return Ok(Effect::Lag { joint, fraction: finite("effect.fraction", fraction, 1.0)? });
+    }
+    if raw.name.get_ref() == "gravity_tilt" {
+        return match &raw.urad_per_nm {
+            Some(tilt) => {
+                Ok(Effect::GravityTilt { per_nm: finite("effect.urad_per_nm", tilt, URAD_PER_NM)? })
+            }
+            None => lacks("urad_per_nm"),
+        };
     }
     let Some(joint) = joint else { return lacks("joint") };
     match raw.name.get_ref().as_str() {
@@ -109,6 +119,27 @@ pub(super) fn read(toml: &TomlText, spanned: &Spanned<RawEffect>, joints: usize)
             }
             None => lacks("urad_per_nm"),
         },
+        "joint_nonlinear_stiffness" => {
+            let (power, key, number) = match (&raw.urad_per_nm2, &raw.urad_per_nm3) {
+                (Some(number), None) => (TorquePower::Square, "effect.urad_per_nm2", number),
+                (None, Some(number)) => (TorquePower::Cube, "effect.urad_per_nm3", number),
+                _ => return lacks("urad_per_nm2, or urad_per_nm3"),
+            };
+            Ok(Effect::NonlinearStiffness { joint, power, coefficient: finite(key, number, URAD)? })
+        }
+        "link_flexibility" => match &raw.urad_per_nm {
+            Some(turn) => Ok(Effect::LinkFlexibility {
+                joint,
+                per_nm: finite("effect.urad_per_nm", turn, URAD_PER_NM)?,
+            }),
+            None => lacks("urad_per_nm"),
+        },
+        "joint_friction" => match &raw.urad_per_nm {
+            Some(wound) => {
+                Ok(Effect::Friction { joint, per_nm: finite("effect.urad_per_nm", wound, URAD_PER_NM)? })
+            }
+            None => lacks("urad_per_nm"),
+        },
         "readback_lag" => lacks("fraction"),
         "wrist_coupling" => match (&raw.from_joint, &raw.fraction) {
             (Some(from), Some(fraction)) => Ok(Effect::Coupling {
@@ -124,7 +155,8 @@ pub(super) fn read(toml: &TomlText, spanned: &Spanned<RawEffect>, joints: usize)
 
 const EXPECTED: &str = "transmission_error (cycles_per_rev, sin_urad, cos_urad; or angle_deg and correction_urad), \
                         encoder_scale (factor), backlash (play_urad, taken_up), wrist_coupling (from_joint, fraction), \
-                        readback_lag (fraction; of all joints without joint), joint_compliance (urad_per_nm) or weight (at_joint, urad_per_m)";
+                        readback_lag (fraction; of all joints without joint), joint_compliance (urad_per_nm), joint_nonlinear_stiffness (urad_per_nm2 or urad_per_nm3), \
+                        joint_friction (urad_per_nm), link_flexibility (urad_per_nm), gravity_tilt (urad_per_nm; without joint) or weight (at_joint, urad_per_m)";
 
 /// The section of an effect.
 pub(super) fn written(effect: &Effect) -> String {
@@ -154,6 +186,10 @@ pub(super) fn written(effect: &Effect) -> String {
         Effect::PlayByApproach { joint, play } => {
             format!("{}play_urad = {:?}\ntaken_up = \"approach\"\n", head("backlash", *joint), urad(*play))
         }
+        Effect::Friction { joint, per_nm } => {
+            let h = in_unit(*per_nm, URAD_PER_NM);
+            format!("{}urad_per_nm = {h:?}\n", head("joint_friction", *joint))
+        }
         Effect::Lag { joint: Some(joint), fraction } => {
             format!("{}fraction = {fraction:?}\n", head("readback_lag", *joint))
         }
@@ -163,6 +199,21 @@ pub(super) fn written(effect: &Effect) -> String {
         Effect::Compliance { joint, per_nm } => {
             let c = in_unit(*per_nm, URAD_PER_NM);
             format!("{}urad_per_nm = {c:?}\n", head("joint_compliance", *joint))
+        }
+        Effect::NonlinearStiffness { joint, power, coefficient } => {
+            let key = match power {
+                TorquePower::Square => "urad_per_nm2",
+                TorquePower::Cube => "urad_per_nm3",
+            };
+            format!("{}{key} = {:?}\n", head("joint_nonlinear_stiffness", *joint), urad(*coefficient))
+        }
+        Effect::LinkFlexibility { joint, per_nm } => {
+            let k = in_unit(*per_nm, URAD_PER_NM);
+            format!("{}urad_per_nm = {k:?}\n", head("link_flexibility", *joint))
+        }
+        Effect::GravityTilt { per_nm } => {
+            let k = in_unit(*per_nm, URAD_PER_NM);
+            format!("\n[[effect]]\nname = \"gravity_tilt\"\nurad_per_nm = {k:?}\n")
         }
         Effect::Weight { joint, at, per_metre } => {
             let at = at.map_or_else(String::new, |at| format!("at_joint = {}\n", at + 1));

@@ -195,6 +195,11 @@ impl<'s> Kinematics<'s> {
         self.joint_jacobian(joint)
     }
 
+    /// {0}.
+    pub(super) fn base(&self) -> &Pose {
+        &self.base
+    }
+
     /// The robot that it is the configuration of.
     pub(super) fn robot(&self) -> &Robot {
         self.setup.robot

@@ -121,6 +121,7 @@ impl Robot {
             kinematics.torques(&loads, &mut torque);
         }
         kinematics.update(q, &torque);
+        kinematics.tip += kinematics.structural_deflection(&loads);
         torque
     }
 

@@ -215,6 +215,7 @@ impl Reader<'_> {
             constraints,
             warnings: Vec::new(),
         };
+        campaign.take_up_moves();
         let guess = Pose::from_xyz_rpy(
             [campaign.base[0], campaign.base[1], campaign.base[2]],
             [campaign.base[3], campaign.base[4], campaign.base[5]],

@@ -62,7 +62,7 @@ pub(super) fn read(
         Seen::Sockets(sockets) => Targets::Sockets(distances(&reader.groups, sockets)),
         _ => Targets::Points(points),
     };
-    let mut recording = Recording {
+    let recording = Recording {
         source: comments_above(text),
         file: file.to_owned(),
         joint_count: robot.joints.len(),
@@ -73,7 +73,6 @@ pub(super) fn read(
         stations: reader.stations.iter().map(|name| Station::first(name)).collect(),
         targets,
     };
-    recording.take_up_moves(robot);
     let mut warnings = checks::about_dialect(file, &table);
     warnings.extend(columns.unused(file, &table));
     warnings.extend(checks::about_joints(&recording, robot, role));

@@ -126,11 +126,6 @@ fn own_parameters(_: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> 
     parts.iter().flat_map(|part| part.estimates.clone()).collect()
 }
 
-/// No file has a place for it.
-fn nowhere(_: &Finding, _: &CalibrationModel, _: &mut Campaign) -> WrittenTo {
-    WrittenTo::Nowhere
-}
-
 /// Taken out of the measured points; sockets have none.
 pub(super) fn out_of_the_points(
     finding: &Finding,

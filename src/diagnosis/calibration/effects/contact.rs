@@ -6,8 +6,8 @@ use super::super::model::entry::linear;
 use super::super::model::{CalibrationModel, Configuration};
 use super::loads::{gives_way, pulled};
 use super::{
-    CalibrationEffect, Context, Entry, Transfer, first, lack, no_event, nowhere, out_of_the_points,
-    own_parameters, single, size,
+    CalibrationEffect, Context, Entry, Transfer, first, lack, no_event, out_of_the_points, own_parameters,
+    single, size,
 };
 use crate::calibration::campaign::Targets;
 use crate::inference::{Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
@@ -33,7 +33,7 @@ pub static CONTACT_FORCE_VARIATION: CalibrationEffect = CalibrationEffect {
         needs: "clamps, and a rod or joints of known compliance",
         cause: "a contact force that differs from the stated one",
         cause_at: |location| format!("a contact force that differs from the stated one ({location})"),
-        written_to: WrittenTo::Nowhere,
+        written_to: WrittenTo::Recording,
         reported: Reported::Alone,
         seen_along: |_| Vec::new(),
         direct_check: Some("Measure the contact force with a spring balance."),
@@ -41,7 +41,7 @@ pub static CONTACT_FORCE_VARIATION: CalibrationEffect = CalibrationEffect {
     candidates: contacts,
     estimates: own_parameters,
     observed: contact_observed,
-    write: nowhere,
+    write: out_of_the_points,
     transfer: Transfer::Nothing,
     event: no_event,
 };

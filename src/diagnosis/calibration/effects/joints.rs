@@ -4,21 +4,19 @@
 //! oⱼ) × g), and the compliance has one parameter for every frame beyond the joint: c·m_k·g, rad
 //! per metre of horizontal lever.
 
-use nalgebra::Vector3;
-
-use super::super::model::entry::{Column, linear};
-use super::super::model::law::{Law, Power};
+use super::super::model::entry::{Column, at_least, linear};
+use super::super::model::law::Law;
 use super::super::model::{CalibrationModel, Configuration};
 use super::per_torque::per_torque;
 use super::{
     CalibrationEffect, Context, Entry, Transfer, along, capital, first, first_value, joint, joint_by, lack,
-    law, no_event, nowhere, own_parameters, single,
+    law, no_event, own_parameters, single,
 };
 use crate::calibration::campaign::Campaign;
 use crate::inference::{
     Effect, Finding, JointVariable, Kind, Location, NotTestable, Parameter, Part, Reported, WrittenTo,
 };
-use crate::robot;
+use crate::robot::{self, TorquePower, across};
 
 /// Angle by which a joint or a link deflects under its largest torque beyond what is modelled, rad:
 /// a tenth to a half of what industrial drives deflect by altogether (0.5 mrad).
@@ -79,7 +77,10 @@ fn compliances(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
         return joints.filter_map(|j| compliance_without_masses(context, j)).collect();
     }
     let of_joint = |(j, largest): (usize, f64)| {
+        // with what is modelled no drive turns against its torque
+        let modelled = context.configurations.first().map_or(0.0, |there| there.compliance[j]);
         let compliance = linear("compliance_urad_per_nm", DEFLECTION / largest);
+        let compliance = at_least(-modelled, compliance);
         single(&JOINT_COMPLIANCE, joint(j), compliance, context.turn(j, |_, there| there.torque[j]))
     };
     loaded.into_iter().map(of_joint).collect()
@@ -109,9 +110,8 @@ fn compliance_without_masses(context: &Context, j: usize) -> Option<Entry> {
             let largest = context.largest(arm);
             let name = frame.map_or("flange_urad_per_m".into(), |k| format!("joint_{}_urad_per_m", k + 1));
             let column = context.turn(j, |_, there| arm(there));
-            let mut deflection = linear(name, DEFLECTION / largest.max(ONE_POINT));
             // drives deflect with their torque, never against it
-            deflection.bounds.0 = 0.0;
+            let deflection = at_least(0.0, linear(name, DEFLECTION / largest.max(ONE_POINT)));
             (largest > ONE_POINT).then_some((frame, (deflection, column)))
         })
         .unzip();
@@ -176,7 +176,7 @@ pub static JOINT_NONLINEAR_STIFFNESS: CalibrationEffect = CalibrationEffect {
         needs: "masses in the robot file, and a joint that they load",
         cause: "a stiffness that depends on the load",
         cause_at: |location| format!("a load-dependent stiffness of {}", location.place()),
-        written_to: WrittenTo::Nowhere,
+        written_to: WrittenTo::Model,
         reported: Reported::Alone,
         seen_along: |location| along(location, JointVariable::Torque),
         direct_check: None,
@@ -184,7 +184,7 @@ pub static JOINT_NONLINEAR_STIFFNESS: CalibrationEffect = CalibrationEffect {
     candidates: nonlinear,
     estimates: per_torque,
     observed: nonlinear_observed,
-    write: nowhere,
+    write: write_nonlinear,
     transfer: Transfer::Candidate,
     event: no_event,
 };
@@ -201,9 +201,10 @@ fn nonlinear(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         let square = turn(|torque| torque * torque.abs());
         let cube = turn(|torque| torque.powi(3));
         [
-            single(&JOINT_NONLINEAR_STIFFNESS, joint(j), quadratic, square).by(Law::Nonlinear(Power::Square)),
+            single(&JOINT_NONLINEAR_STIFFNESS, joint(j), quadratic, square)
+                .by(Law::Nonlinear(TorquePower::Square)),
             single(&JOINT_NONLINEAR_STIFFNESS, joint_by(j, "cubic"), cubic, cube)
-                .by(Law::Nonlinear(Power::Cube)),
+                .by(Law::Nonlinear(TorquePower::Cube)),
         ]
     };
     loaded.into_iter().flat_map(of_joint).collect()
@@ -211,8 +212,8 @@ fn nonlinear(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
 
 fn nonlinear_observed(finding: &Finding, model: &CalibrationModel) -> String {
     let (unit, power) = match law(finding, model) {
-        Law::Nonlinear(Power::Cube) => ("µrad/(N·m)³", "the third power of"),
-        Law::Nonlinear(Power::Square)
+        Law::Nonlinear(TorquePower::Cube) => ("µrad/(N·m)³", "the third power of"),
+        Law::Nonlinear(TorquePower::Square)
         | Law::Only
         | Law::Gear(_)
         | Law::Play(_)
@@ -223,6 +224,15 @@ fn nonlinear_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Moved(_) => ("µrad/(N·m)²", "the square of"),
     };
     format!("{} gives way with {power} its load, by {}", capital(&finding.location), first(finding).say(unit))
+}
+
+fn write_nonlinear(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    let (Some(joint), Law::Nonlinear(power)) = (finding.location.joint(), law(finding, model)) else {
+        return WrittenTo::Nowhere;
+    };
+    let (power, coefficient) = (*power, first_value(finding));
+    extended.robot.effects.push(robot::Effect::NonlinearStiffness { joint, power, coefficient });
+    WrittenTo::Model
 }
 
 /// A link that bends across its joint's axis.
@@ -238,7 +248,7 @@ pub static LINK_FLEXIBILITY: CalibrationEffect = CalibrationEffect {
         needs: "masses in the robot file, and a joint that they load",
         cause: "a link that bends",
         cause_at: |location| format!("bending of the link before {location}"),
-        written_to: WrittenTo::Nowhere,
+        written_to: WrittenTo::Model,
         reported: Reported::Alone,
         seen_along: |location| along(location, JointVariable::Torque),
         direct_check: None,
@@ -249,10 +259,16 @@ pub static LINK_FLEXIBILITY: CalibrationEffect = CalibrationEffect {
         let by = first(finding).say("µrad/(N·m)");
         format!("The link before {} bends by {by} under the moment there", finding.location)
     },
-    write: nowhere,
+    write: write_link,
     transfer: Transfer::Candidate,
     event: no_event,
 };
+
+fn write_link(finding: &Finding, _: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    let Some(joint) = finding.location.joint() else { return WrittenTo::Nowhere };
+    extended.robot.effects.push(robot::Effect::LinkFlexibility { joint, per_nm: first_value(finding) });
+    WrittenTo::Model
+}
 
 fn links(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let loaded = loaded(context);
@@ -263,12 +279,11 @@ fn links(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
 }
 
 fn link(context: &Context, j: usize) -> Option<Entry> {
-    let across = |moment: &Vector3<f64>, axis: &Vector3<f64>| moment - axis * axis.dot(moment);
-    let largest = context.largest(|there| across(&there.moment[j], &there.axis[j]).norm());
-    let column = context
-        .column(|_, there| across(&there.moment[j], &there.axis[j]).cross(&(there.tip - there.origin[j])));
+    let bent = |there: &Configuration| across(&there.moment[j], &there.axis[j]);
+    let largest = context.largest(|there| bent(there).norm());
+    let column = context.column(|_, there| bent(there).cross(&(there.tip - there.origin[j])));
     let size = DEFLECTION / largest.max(f64::MIN_POSITIVE);
-    let bending = linear("bending_urad_per_nm", size);
+    let bending = at_least(0.0, linear("bending_urad_per_nm", size));
     (largest > 0.0).then(|| single(&LINK_FLEXIBILITY, joint(j), bending, column))
 }
 
@@ -278,13 +293,13 @@ pub static GRAVITY_TILT: CalibrationEffect = CalibrationEffect {
         name: "gravity_tilt",
         kind: Kind::Physics,
         summary: "the base tilts under the arm's weight",
-        formula: "φ × (tip − base): φ = k·(moment at the base, its horizontal part)",
+        formula: "φ × (tip − o): φ = k·(moment about o, its horizontal part), o the origin of {0}",
         prior: "200 µrad at the largest moment, as joint_compliance",
         parameters: &[(&["tilt_urad_per_nm"], "angle per moment")],
         needs: "masses in the robot file",
         cause: "a compliant base",
         cause_at: |_| "a base that tilts under the arm's weight".into(),
-        written_to: WrittenTo::Nowhere,
+        written_to: WrittenTo::Model,
         reported: Reported::Alone,
         seen_along: |_| Vec::new(),
         direct_check: None,
@@ -294,10 +309,15 @@ pub static GRAVITY_TILT: CalibrationEffect = CalibrationEffect {
     observed: |finding, _| {
         format!("The base tilts by {} under the arm's moment", first(finding).say("µrad/(N·m)"))
     },
-    write: nowhere,
+    write: write_tilt,
     transfer: Transfer::Candidate,
     event: no_event,
 };
+
+fn write_tilt(finding: &Finding, _: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    extended.robot.effects.push(robot::Effect::GravityTilt { per_nm: first_value(finding) });
+    WrittenTo::Model
+}
 
 /// Also by what is known to pull where the masses of the arm are not.
 fn tilts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
@@ -308,14 +328,9 @@ fn tilts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
 }
 
 fn tilt(context: &Context) -> Option<Entry> {
-    let upright = context.configurations.first()?.gravity.try_normalize(0.0)?;
-    let moment = |there: &Configuration| {
-        let moment = there.moment[0];
-        moment - upright * upright.dot(&moment)
-    };
-    let largest = context.largest(|there| moment(there).norm());
-    let column = context.column(|_, there| moment(there).cross(&(there.tip - there.origin[0])));
+    let largest = context.largest(|there| there.base_moment.norm());
+    let column = context.column(|_, there| there.base_moment.cross(&(there.tip - there.base.origin)));
     let size = DEFLECTION / largest.max(f64::MIN_POSITIVE);
-    let tilting = linear("tilt_urad_per_nm", size);
+    let tilting = at_least(0.0, linear("tilt_urad_per_nm", size));
     (largest > 0.0).then(|| single(&GRAVITY_TILT, Location::Part(Part::Base), tilting, column))
 }

@@ -10,8 +10,8 @@ use super::super::model::entry::linear;
 use super::super::model::law::{Law, RodLoad};
 use super::super::model::{CalibrationModel, Configuration};
 use super::{
-    CalibrationEffect, Context, Entry, Transfer, first, lack, law, no_event, nowhere, own_parameters, single,
-    size,
+    CalibrationEffect, Context, Entry, Transfer, first, lack, law, no_event, out_of_the_points,
+    own_parameters, single, size,
 };
 use crate::inference::{
     Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Part, Reported, WrittenTo,
@@ -41,7 +41,7 @@ pub static ROD_STIFFNESS: CalibrationEffect = CalibrationEffect {
         needs: "a rod in the campaign",
         cause: "a rod stiffness that differs from its model",
         cause_at: |_| "a rod of another stiffness".into(),
-        written_to: WrittenTo::Nowhere,
+        written_to: WrittenTo::Recording,
         reported: Reported::Alone,
         seen_along: |_| Vec::new(),
         direct_check: Some(
@@ -52,7 +52,7 @@ pub static ROD_STIFFNESS: CalibrationEffect = CalibrationEffect {
     candidates: rods,
     estimates: stiffness,
     observed: rod_observed,
-    write: nowhere,
+    write: out_of_the_points,
     transfer: Transfer::Candidate,
     event: no_event,
 };
@@ -147,7 +147,7 @@ pub static TIP_MASS: CalibrationEffect = CalibrationEffect {
         needs: "a rod or joints of known compliance",
         cause: "a mass that the files do not state",
         cause_at: |_| "a mass at the tip".into(),
-        written_to: WrittenTo::Nowhere,
+        written_to: WrittenTo::Recording,
         reported: Reported::Alone,
         seen_along: |_| Vec::new(),
         direct_check: Some("Weigh the ball with its holder."),
@@ -155,7 +155,7 @@ pub static TIP_MASS: CalibrationEffect = CalibrationEffect {
     candidates: tip_masses,
     estimates: own_parameters,
     observed: |finding, _| format!("The tip carries {} than stated", heavier(finding, "g")),
-    write: nowhere,
+    write: out_of_the_points,
     transfer: Transfer::Candidate,
     event: no_event,
 };
@@ -184,7 +184,7 @@ pub static PAYLOAD_MASS: CalibrationEffect = CalibrationEffect {
         needs: "joints of known compliance",
         cause: "a mass that the files do not state",
         cause_at: |_| "a mass on the flange".into(),
-        written_to: WrittenTo::Nowhere,
+        written_to: WrittenTo::Recording,
         reported: Reported::Alone,
         seen_along: |_| Vec::new(),
         direct_check: Some("Weigh what is on the flange."),
@@ -192,7 +192,7 @@ pub static PAYLOAD_MASS: CalibrationEffect = CalibrationEffect {
     candidates: payload_masses,
     estimates: own_parameters,
     observed: |finding, _| format!("The flange carries {} than stated", heavier(finding, "kg")),
-    write: nowhere,
+    write: out_of_the_points,
     transfer: Transfer::Candidate,
     event: no_event,
 };
@@ -224,7 +224,7 @@ pub static GRAVITY_DIRECTION: CalibrationEffect = CalibrationEffect {
         needs: "a rod, or masses in the robot file and joints of known compliance",
         cause: "a base that does not stand level",
         cause_at: |_| "a base that does not stand level".into(),
-        written_to: WrittenTo::Nowhere,
+        written_to: WrittenTo::Recording,
         reported: Reported::Alone,
         seen_along: |_| Vec::new(),
         direct_check: Some("Put a level on the robot's foot."),
@@ -235,7 +235,7 @@ pub static GRAVITY_DIRECTION: CalibrationEffect = CalibrationEffect {
         let angle = size(finding, DEG).say("°");
         format!("Gravity is inclined by {angle} to where the base says it acts")
     },
-    write: nowhere,
+    write: out_of_the_points,
     transfer: Transfer::Candidate,
     event: no_event,
 };

@@ -3,8 +3,9 @@
 //! torque's relative standard uncertainty (`torque_uncertainty.rs`).
 
 use super::super::model::CalibrationModel;
-use super::super::model::law::{Law, Power};
+use super::super::model::law::Law;
 use crate::inference::{Estimate, FindingPart};
+use crate::robot::TorquePower;
 
 /// Half of a 95 % interval in standard deviations.
 const COVERAGE: f64 = 1.96;
@@ -15,8 +16,8 @@ pub(super) fn per_torque(model: &CalibrationModel, parts: &[FindingPart]) -> Vec
     let known = &model.torque_uncertainty;
     let widened = |part: &FindingPart| -> Vec<Estimate> {
         let power = match model.law(part.term.candidate) {
-            Law::Nonlinear(Power::Cube) => 3.0,
-            Law::Nonlinear(Power::Square) => 2.0,
+            Law::Nonlinear(TorquePower::Cube) => 3.0,
+            Law::Nonlinear(TorquePower::Square) => 2.0,
             _ => 1.0,
         };
         let relative = known.of(part.location.joint());

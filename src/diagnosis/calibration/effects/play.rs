@@ -1,7 +1,7 @@
 //! What a joint keeps of the way that it came: play and friction.
 
 use super::super::model::CalibrationModel;
-use super::super::model::entry::linear;
+use super::super::model::entry::{at_least, linear};
 use super::super::model::law::{Law, TakenUp};
 use super::joints::{NO_MASSES, loaded};
 use super::per_torque::per_torque;
@@ -44,7 +44,7 @@ pub static BACKLASH: CalibrationEffect = CalibrationEffect {
 };
 
 fn plays(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
-    let play = || linear("play_urad", JOINT_ANGLE);
+    let play = || at_least(0.0, linear("play_urad", JOINT_ANGLE));
     let loaded = loaded(context);
     if loaded.is_empty() {
         lacks.push(lack(&BACKLASH, NO_MASSES));
@@ -74,7 +74,7 @@ fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Warms(..)
         | Law::Moved(_) => "taken up on the side that its load pulls to",
     };
-    let play = first(finding).size().say("µrad");
+    let play = first(finding).say("µrad");
     format!("{} has {play} of play, {by}", capital(&finding.location))
 }
 
@@ -108,7 +108,7 @@ pub static JOINT_FRICTION: CalibrationEffect = CalibrationEffect {
         needs: "masses in the robot file, a joint that they load, rows in the order of recording",
         cause: "friction in its drive",
         cause_at: |location| format!("friction in the drive of {}", location.place()),
-        written_to: WrittenTo::Recording,
+        written_to: WrittenTo::Model,
         reported: Reported::Alone,
         seen_along: |location| along(location, JointVariable::Approach),
         direct_check: None,
@@ -116,7 +116,7 @@ pub static JOINT_FRICTION: CalibrationEffect = CalibrationEffect {
     candidates: frictions,
     estimates: per_torque,
     observed: friction_observed,
-    write: super::out_of_the_points,
+    write: write_friction,
     transfer: Transfer::Candidate,
     event: no_event,
 };
@@ -127,14 +127,20 @@ fn frictions(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         lacks.push(lack(&JOINT_FRICTION, NO_MASSES));
     }
     let of_joint = |(j, largest): (usize, f64)| {
-        let wound = linear("urad_per_nm", JOINT_ANGLE / largest);
+        let wound = at_least(0.0, linear("urad_per_nm", JOINT_ANGLE / largest));
         let column = context.turn(j, |_, there| 0.5 * there.torque[j].abs() * there.approach[j]);
         single(&JOINT_FRICTION, joint(j), wound, column)
     };
     loaded.into_iter().map(of_joint).collect()
 }
 
+fn write_friction(finding: &Finding, _: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
+    let Some(joint) = finding.location.joint() else { return WrittenTo::Nowhere };
+    extended.robot.effects.push(robot::Effect::Friction { joint, per_nm: first_value(finding) });
+    WrittenTo::Model
+}
+
 fn friction_observed(finding: &Finding, _: &CalibrationModel) -> String {
-    let per = first(finding).size().say("µrad/(N·m)");
+    let per = first(finding).say("µrad/(N·m)");
     format!("{} stops by {per} of its load apart when it comes from either side", capital(&finding.location))
 }

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::calibration::campaign::Recording;
 use crate::calibration::{Compensation, TORQUE_ROUNDS};
-use crate::robot::{Body, Kinematics, Loads, Motion, Setup};
+use crate::robot::{Kinematics, Loads, Motion, Pull, Setup, across};
 use crate::spatial::Pose;
 
 /// A move of a joint below which it did not move, rad or m: a readout's last digit.
@@ -28,6 +28,8 @@ pub struct Configuration {
     /// First moment of all masses beyond a joint about the point on its axis, kg·m: what g × has to
     /// be multiplied by for their moment.
     pub first_moment: Vec<Vector3<f64>>,
+    /// Horizontal part of the moment of all that the base carries about the origin of {0}, N·m.
+    pub base_moment: Vector3<f64>,
     /// Compliance of each joint, rad/(N·m), or m/N of a prismatic one.
     pub compliance: Vec<f64>,
     /// The frame of the link that each joint moves.
@@ -104,7 +106,6 @@ pub fn all(
     let count = recording.joint_count;
     let mut kinematics = Kinematics::new(setup);
     let gravity = setup.base().rotation * setup.robot.gravity;
-    let bodies: Vec<Option<Body>> = setup.robot.joints.iter().map(|joint| joint.body).collect();
     let mut approach = vec![0.0; count];
     (0..recording.len())
         .map(|row| {
@@ -116,7 +117,10 @@ pub fn all(
                 kinematics.torques(&loads, &mut torque);
             }
             kinematics.update(recording.joints(row), &torque);
-            let (moment, first_moment) = moments(&kinematics, &loads, &bodies);
+            let pulls = kinematics.pulls(&loads);
+            let base = setup.base();
+            let upright = gravity.try_normalize(0.0).unwrap_or_default();
+            let base_moment = pulls.first().map(|pull| across(&pull.moment_about(&base.origin), &upright));
             kinematics.tip += deflections[row];
             let step = step(recording, row);
             for (approach, step) in approach.iter_mut().zip(&step).filter(|(_, s)| s.abs() > STANDSTILL) {
@@ -128,11 +132,12 @@ pub fn all(
                 axis: kinematics.joints.iter().map(|joint| joint.axis).collect(),
                 origin: kinematics.joints.iter().map(|joint| joint.origin).collect(),
                 torque,
-                moment,
-                first_moment,
+                moment: at_axes(&kinematics, &pulls, Pull::moment_about),
+                first_moment: at_axes(&kinematics, &pulls, Pull::first_moment_about),
+                base_moment: base_moment.unwrap_or_default(),
                 compliance: compliance.to_vec(),
                 link: kinematics.joints.iter().map(|joint| joint.distal).collect(),
-                base: setup.base(),
+                base,
                 flange: kinematics.flange,
                 tip: kinematics.tip,
                 gravity,
@@ -148,35 +153,16 @@ fn step(recording: &Recording, row: usize) -> Vec<f64> {
     recording.joints(row).iter().zip(before).map(|(now, before)| now - before).collect()
 }
 
-/// Moment M of all that pulls beyond each joint about the point o on its axis, N·m, and the first
-/// moment S of the masses among it, kg·m; zeros for a prismatic joint.
-///
-/// M = S × g + (tip − o) × F,   S = Σ m·(p − o)
-fn moments(
+/// About a point on the axis of each joint; zeros for a prismatic one.
+fn at_axes(
     kinematics: &Kinematics,
-    loads: &Loads,
-    bodies: &[Option<Body>],
-) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
-    let (mut mass, mut about_world) = (0.0, Vector3::zeros());
-    let mut add = |point: Vector3<f64>, own: f64| {
-        mass += own;
-        about_world += point * own;
-        (mass, about_world)
-    };
-    if let Some(payload) = &loads.payload {
-        add(kinematics.flange.point(&payload.centre), payload.mass);
-    }
-    let mut moments = vec![Vector3::zeros(); bodies.len()];
-    let mut first_moments = moments.clone();
-    for (j, frames) in kinematics.joints.iter().enumerate().rev() {
-        let body = bodies[j].unwrap_or(Body { mass: 0.0, centre: Vector3::zeros() });
-        let (mass, about_world) = add(frames.distal.point(&body.centre), body.mass);
-        if frames.motion == Motion::Revolute {
-            let first = about_world - frames.origin * mass;
-            first_moments[j] = first;
-            moments[j] =
-                first.cross(&loads.gravity) + (kinematics.tip - frames.origin).cross(&loads.tip_force);
-        }
-    }
-    (moments, first_moments)
+    pulls: &[Pull],
+    about: fn(&Pull, &Vector3<f64>) -> Vector3<f64>,
+) -> Vec<Vector3<f64>> {
+    let of_joints = kinematics.joints.iter().zip(pulls);
+    let at = of_joints.map(|(frames, pull)| match frames.motion {
+        Motion::Revolute => about(pull, &frames.origin),
+        Motion::Prismatic => Vector3::zeros(),
+    });
+    at.collect()
 }

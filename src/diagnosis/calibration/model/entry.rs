@@ -90,3 +90,8 @@ pub fn linear(name: impl Into<String>, size: f64) -> Parameter {
     let bounds = (f64::NEG_INFINITY, f64::INFINITY);
     Parameter { unit: Unit::of_key(&name), name, neutral: 0.0, size, bounds }
 }
+
+/// The same of what nature has no less of than `least`: play, friction, what gives way.
+pub fn at_least(least: f64, parameter: Parameter) -> Parameter {
+    Parameter { bounds: (least, f64::INFINITY), ..parameter }
+}

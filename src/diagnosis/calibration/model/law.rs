@@ -6,6 +6,7 @@ use std::fmt;
 
 use super::gear::Gear;
 use crate::inference::Part;
+use crate::robot::TorquePower;
 
 /// The law of a candidate.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,7 +19,7 @@ pub enum Law {
     /// Play of a joint.
     Play(TakenUp),
     /// A stiffness that depends on the load.
-    Nonlinear(Power),
+    Nonlinear(TorquePower),
     /// Compliance of a joint whose loads nobody knows: one parameter for every frame beyond it
     /// where a weight may sit, by its joint; `None` is the flange.
     MassesUnknown(Vec<Option<usize>>),
@@ -41,16 +42,6 @@ pub enum TakenUp {
     ByTorque,
     /// Friction: it stays at the side that it was driven to.
     ByApproach,
-}
-
-/// Power of the torque that a joint deflects with, besides the first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Power {
-    /// τ|τ|.
-    Square,
-    /// τ³.
-    Cube,
 }
 
 /// The load under which a rod's stiffness is another one.

@@ -76,9 +76,7 @@ pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) 
     if entered.is_empty() && removed.is_empty() {
         return Ok(None);
     }
-    for recording in std::iter::once(&mut extended.measurements).chain(&mut extended.validation) {
-        recording.take_up_moves(&extended.robot);
-    }
+    extended.take_up_moves();
     let calibration = calibrate(&extended, model.calibration.mode, &Options::default())?;
     let held_out = found.diagnosis.held_out.as_ref();
     let sd = held_out.map_or(found.diagnosis.noise, |held_out| held_out.after);
@@ -157,8 +155,12 @@ fn angles(extended: &Campaign, joint: usize, recorded: &[f64]) -> Vec<f64> {
         Effect::EncoderScale { .. }
         | Effect::Backlash { .. }
         | Effect::PlayByApproach { .. }
+        | Effect::Friction { .. }
         | Effect::Lag { .. }
         | Effect::Compliance { .. }
+        | Effect::NonlinearStiffness { .. }
+        | Effect::LinkFlexibility { .. }
+        | Effect::GravityTilt { .. }
         | Effect::Weight { .. }
         | Effect::Coupling { .. } => 0,
     };

@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::super::effects::{move_points, out_of_the_points, registry};
+use super::super::effects::{move_points, registry};
 use super::super::laws::written::written;
 use super::super::model::CalibrationModel;
 use crate::calibration::campaign::Campaign;
@@ -16,12 +16,8 @@ pub fn destination(finding: &Finding, model: &CalibrationModel) -> WrittenTo {
 
 /// Writes a finding into a campaign; the answer is where it went.
 pub fn write(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
-    let own = registry::record(finding.effect).map(|effect| (effect.write)(finding, model, extended));
-    match own.unwrap_or(WrittenTo::Nowhere) {
-        // for these poses at least
-        WrittenTo::Nowhere => out_of_the_points(finding, model, extended),
-        written => written,
-    }
+    registry::record(finding.effect)
+        .map_or(WrittenTo::Nowhere, |effect| (effect.write)(finding, model, extended))
 }
 
 /// Where a law would be written: into the robot's file where that knows its variable, or out of

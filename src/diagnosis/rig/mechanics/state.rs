@@ -221,7 +221,7 @@ impl<'a> State<'a> {
             Some(hung) => sign * hung.force,
             // a slide that turns round holds no more than was felt before
             None if datum.is_unloading() => {
-                let felt = (datum.peak + self.load_offset.on(datum) - friction).max(hanging);
+                let felt = (datum.peak + self.load_offset.on(datum) - friction).max(0.0);
                 (hanging + friction).min(felt)
             }
             // a slide that holds the whole load leaves nothing, and turns nothing round

@@ -256,11 +256,12 @@ fn motions(
         let drives: Vec<f64> = own.iter().filter_map(|&i| drive(&rows[i], driven)).collect();
         let mut before: Option<(f64, Phase)> = None;
         for ((&i, &drive), (direction, cycle)) in own.iter().zip(&drives).zip(turns(&drives)) {
-            let phase = if direction * drive < 0.0 || (drive == 0.0 && before.is_some_and(|(b, _)| b != 0.0))
-            {
-                Phase::Unload
-            } else {
-                Phase::Load
+            let phase = match before {
+                // read once more: nothing has moved
+                Some((known, phase)) if known == drive => phase,
+                Some(_) if drive == 0.0 => Phase::Unload,
+                _ if direction * drive < 0.0 => Phase::Unload,
+                _ => Phase::Load,
             };
             let way = &mut ways[usize::from(phase == Phase::Unload)];
             if before.is_none_or(|(_, other)| other != phase) {

@@ -219,13 +219,19 @@ fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {
     data
 }
 
-/// Fills in from which load each one was reached by unloading.
+/// Fills in from which load each one was reached by unloading. The largest load that is read once
+/// more before it is taken off is where the unloading begins: nothing has moved.
 fn find_peaks(data: &mut [Datum]) {
-    let mut peaks: HashMap<(usize, Direction), f64> = HashMap::new();
+    // the largest load, and the largest while loading
+    let mut peaks: HashMap<(usize, Direction), (f64, f64)> = HashMap::new();
     for datum in data {
-        let peak = peaks.entry((datum.run, datum.direction)).or_default();
-        if datum.is_unloading() && datum.load < *peak {
-            datum.peak = *peak;
+        let (peak, loaded) = peaks.entry((datum.run, datum.direction)).or_default();
+        if datum.is_unloading() {
+            if datum.load < *peak || datum.load == *loaded {
+                datum.peak = *peak;
+            }
+        } else {
+            *loaded = loaded.max(datum.load);
         }
         *peak = peak.max(datum.load);
     }
@@ -256,6 +262,13 @@ mod tests {
         let data = all(&Readings::from_text("f", text).unwrap().rows);
         let peaks: Vec<f64> = data.iter().map(|d| d.peak).collect();
         assert_eq!(peaks, [f64::INFINITY, f64::INFINITY, 9.0, f64::INFINITY]);
+        // the top read once more
+        let text = "axis,load_n,trial,phase,dy_um\ny,5,a,load,0\ny,9,a,load,0\ny,9,a,unload,0\n\
+                    y,5,a,unload,0\ny,9,b,unload,0\ny,9,b,unload,0\n";
+        let data = all(&Readings::from_text("f", text).unwrap().rows);
+        let peaks: Vec<f64> = data.iter().map(|d| d.peak).collect();
+        let none = f64::INFINITY;
+        assert_eq!(peaks, [none, none, 9.0, 9.0, none, none]);
     }
 
     #[test]

@@ -16,6 +16,11 @@ fn effects_on_the_load_have_the_sign_and_size_of_a_hand_computation() {
     assert_all(&one(&model, "friction", "slide", 7.0, Axis::Y), &[5.0 * y, 7.0 * y, -7.0 * y, -7.0 * y]);
     // 20 − 9 N are felt at the turn, and 5 N below there no more
     assert_all(&one(&model, "friction", "slide", 9.0, Axis::Y), &[5.0 * y, 9.0 * y, -6.0 * y, -9.0 * y]);
+    // the top read once more before it is taken off: nothing has moved
+    let again = UP_AND_DOWN.replace("-y,5,unload", "-y,20,unload,0,0,0\n-y,19,unload,0,0,0\n-y,5,unload");
+    let read_again = RigModel::new(&readings(&again), Some(&rod)).unwrap().0;
+    let held = one(&read_again, "friction", "slide", 1.0, Axis::Y);
+    assert_all(&held, &[y, y, y, 0.0, -y, -y]);
     assert_all(&one(&model, "load_offset", "hanger", 2.0, Axis::Y), &[-2.0 * y, -2.0 * y, -2.0 * y, 0.0]);
     let (sin, cos) = (2.0 * DEG).sin_cos();
     let turned = |load: f64| -load * sin * c[(2, 2)];

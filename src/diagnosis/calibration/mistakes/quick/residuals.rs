@@ -39,10 +39,11 @@ pub(super) fn load(
         };
         let loads = Loads { gravity: body.robot.gravity, payload: with.payload, tip_force };
         kinematics.torques(&loads, torque);
+        let r = &kinematics.flange.rotation;
+        deflection[row] = r.tr_mul(&kinematics.structural_deflection(&loads));
         if let Some(compliance) = &with.compliance {
-            let r = &kinematics.flange.rotation;
             let down = r.tr_mul(&body.robot.gravity) / STANDARD_GRAVITY;
-            deflection[row] =
+            deflection[row] +=
                 times(&compliance.gravity, &down) + times(&compliance.force, &r.tr_mul(&tip_force));
         }
     }

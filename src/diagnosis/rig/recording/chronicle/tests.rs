@@ -92,3 +92,14 @@ fn without_times_stations_in_blocks_or_side_by_side_are_the_same_instants() {
     assert_eq!(column(&(head.to_owned() + &beside), |entry| entry.place), [0, 0, 2, 2, 4, 4]);
     assert_eq!(column(&(head.to_owned() + &blocks), |entry| entry.place), [0, 1, 2, 0, 1, 2]);
 }
+
+/// Three readings at rest are no three ways.
+#[test]
+fn a_displacement_that_is_held_keeps_the_way_that_it_came() {
+    let cycle = [10, 20, 10, 0, 0, 0, -10, -20, -10, 0, 0, 0];
+    let rows = cycle.map(|um| format!("y,{},{um}\n", um + 30)).concat().repeat(2);
+    let text = format!("# driven = \"displacement\"\naxis,load_n,dy_um\n{rows}");
+    let (up, down) = (Some(Phase::Load), Some(Phase::Unload));
+    let phases = column(&text, |entry| entry.motion.map(|motion| motion.phase));
+    assert_eq!(phases[..9], [up, up, down, down, down, down, up, up, down]);
+}

@@ -157,7 +157,9 @@ def test_no_row_is_lost_and_no_mask() -> None:
     columns = _columns("campaigns/tx90-5/measurements.csv")
     table: dict[str, Any] = {key: cells if key in ("pose", "clamp") else _numbers(cells) for key, cells in columns.items()}
     table["pose"] = ["#0", *table["pose"][1:]]
-    assert rodcal.Campaign({**_keys(), "measurements": table, "validation": None}).poses == len(table["pose"])
+    keys = {**_keys(), "measurements": table}
+    del keys["validation"]
+    assert rodcal.Campaign(keys).poses == len(table["pose"])
     masked = np.ma.MaskedArray([1.0, 2.0, 3.0], mask=[False, False, True])
     readings = rodcal.Readings({"axis": ["y", "y", "y"], "load_n": [1.0, 2.0, 3.0], "trial": ["#1", "2", "3"], "dy_um": masked})
     assert len(readings) == 3

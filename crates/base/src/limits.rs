@@ -31,7 +31,7 @@ pub const URDF_NAMESPACES: usize = 100;
 pub const URDF_NODES: usize = 1_000_000;
 /// Joints of a robot that move.
 pub const ROBOT_JOINTS: usize = 64;
-/// Size of a joint's value in a table, degrees or mm: sine and cosine of what is larger say nothing.
+/// Size of a joint's value in a table, degrees or mm: the sine of what is larger says nothing.
 pub const JOINT_VALUE: usize = 1_000_000_000;
 /// Effects of a robot file.
 pub const ROBOT_EFFECTS: usize = 1_000;

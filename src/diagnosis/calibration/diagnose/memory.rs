@@ -84,8 +84,8 @@ mod tests {
             let campaign = Campaign::new(robot.clone(), recording.subset(&rows)).unwrap();
             check_memory(&campaign).map_err(|error| format!("{error}; {}", error.hint().unwrap_or_default()))
         };
-        assert!(refused(20_000).is_ok());
+        assert!(refused(10_000).is_ok());
         let message = refused(60_000).unwrap_err();
-        assert!(message.contains("60000 poses of 6 joints") && message.contains("one row in 3"), "{message}");
+        assert!(message.contains("60000 poses of 6 joints") && message.contains("one row in 5"), "{message}");
     }
 }

@@ -113,7 +113,8 @@ def _columns(table: Any, name: str) -> Iterable[tuple[str, Any]]:
 def _array(values: Any) -> np.ndarray[Any, Any]:
     """Values as an array; what is masked is ``None``."""
     if isinstance(values, np.ma.MaskedArray):
-        return np.asarray(values.astype(object).filled(None))
+        # filled(None) would fill in what numpy thinks of
+        return np.where(np.ma.getmaskarray(values), None, values.data)
     return np.asarray(values)
 
 

@@ -18,27 +18,31 @@ pub struct Answer(pub rodcal::answer::Answer);
 impl Answer {
     /// An answer that was pickled.
     #[staticmethod]
-    fn restored(report: &[u8], json: &str, files: Vec<(String, Vec<u8>)>, status: u8) -> PyResult<Answer> {
+    fn restored(report: &[u8], json: &[u8], files: Vec<(String, Vec<u8>)>, status: u8) -> PyResult<Answer> {
         let wrong = |error: &dyn std::fmt::Display| PyValueError::new_err(error.to_string());
         let report: Report = rmp_serde::from_slice(report).map_err(|error| wrong(&error))?;
-        let json = serde_json::from_str(json).map_err(|error| wrong(&error))?;
+        let json = rmp_serde::from_slice(json).map_err(|error| wrong(&error))?;
         let mut answer = rodcal::answer::Answer::new(json, report);
         (answer.files, answer.status) = (files, status);
         Ok(Answer(answer))
     }
 
-    /// Pickled with its report: numbers that are not finite too, which JSON has no words for.
+    /// Pickled to the last bit: the text of a number may be read as its neighbour, and JSON has no
+    /// words for numbers that are not finite.
     #[allow(clippy::type_complexity)]
     fn __reduce__<'py>(
         &self,
         py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>, String, Vec<(String, Bound<'py, PyBytes>)>, u8))>
-    {
+    ) -> PyResult<(
+        Bound<'py, PyAny>,
+        (Bound<'py, PyBytes>, Bound<'py, PyBytes>, Vec<(String, Bound<'py, PyBytes>)>, u8),
+    )> {
         let own = &self.0;
-        let report =
-            rmp_serde::to_vec(&own.report).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let wrong = |error: rmp_serde::encode::Error| PyValueError::new_err(error.to_string());
+        let report = rmp_serde::to_vec(&own.report).map_err(wrong)?;
+        let json = rmp_serde::to_vec(&own.json).map_err(wrong)?;
         let files = own.files.iter().map(|(name, content)| (name.clone(), PyBytes::new(py, content)));
-        let parts = (PyBytes::new(py, &report), own.json.to_string(), files.collect(), own.status);
+        let parts = (PyBytes::new(py, &report), PyBytes::new(py, &json), files.collect(), own.status);
         Ok((py.get_type::<Answer>().getattr("restored")?, parts))
     }
 

@@ -161,7 +161,7 @@ def test_no_row_is_lost_and_no_mask() -> None:
     del keys["validation"]
     assert rodcal.Campaign(keys).poses == len(table["pose"])
     masked = np.ma.MaskedArray([1.0, 2.0, 3.0], mask=[False, False, True])
-    readings = rodcal.Readings({"axis": ["y", "y", "y"], "load_n": [1.0, 2.0, 3.0], "trial": ["#1", "2", "3"], "dy_um": masked})
+    readings = rodcal.Readings({"axis": ["y", "y", "y"], "load_n": [1.0, 2.0, 3.0], "trial": ["#1", "2", "3"], "dy_um": masked, "dz_um": [0.0] * 3})
     assert len(readings) == 3
 
 
@@ -174,6 +174,9 @@ def test_results_can_be_pickled() -> None:
 
 
 def test_a_diagnosis_of_a_campaign_in_memory_is_applied() -> None:
-    campaign = rodcal.simulate("rods/5.toml", poses=6).campaign()
-    found = rodcal.diagnose_calibration(campaign, apply=True)
+    table: dict[str, Any] = dict(_columns("campaigns/tx90-5/measurements.csv"))
+    table["q4_deg"] = np.deg2rad(_numbers(table["q4_deg"]))
+    keys = {**_keys(), "measurements": table}
+    del keys["validation"]
+    found = rodcal.diagnose_calibration(rodcal.Campaign(keys), apply=True)
     assert any(name.endswith("campaign.toml") for name in found.files), list(found.files)

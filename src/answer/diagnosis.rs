@@ -63,8 +63,8 @@ pub fn diagnose_rig_with(
 }
 
 /// What the residuals of a calibration show that its model leaves out. `others` are files that may
-/// have been meant. With `apply`, the content of a file that the campaign names, the corrected robot
-/// and campaign are its files, where something can be corrected.
+/// have been meant. With `apply`, the content of a file that the campaign names, the corrected
+/// robot and campaign are its files, where something can be corrected.
 ///
 /// # Errors
 /// As [`mend`] and what calibrates; [`crate::Error::File`] where a file that is copied cannot be

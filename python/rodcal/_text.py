@@ -114,7 +114,9 @@ def _array(values: Any) -> np.ndarray[Any, Any]:
     """Values as an array; what is masked is ``None``."""
     if isinstance(values, np.ma.MaskedArray):
         # filled(None) would fill in what numpy thinks of
-        return np.where(np.ma.getmaskarray(values), None, values.data)
+        plain: np.ndarray[Any, Any] = values.data.astype(object)
+        plain[np.ma.getmaskarray(values)] = None
+        return plain
     return np.asarray(values)
 
 

@@ -62,6 +62,9 @@ pub fn diagnose_rig_with(
     Ok(answer)
 }
 
+/// The bytes of a file that a campaign names, by the name that stands there.
+pub type Content<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>>;
+
 /// What the residuals of a calibration show that its model leaves out. `others` are files that may
 /// have been meant. With `apply`, the content of a file that the campaign names, the corrected
 /// robot and campaign are its files, where something can be corrected.
@@ -73,7 +76,7 @@ pub fn diagnose_calibration(
     campaign: &Campaign,
     mode: Mode,
     others: &Neighbours,
-    apply: Option<&dyn Fn(&str) -> Result<Vec<u8>>>,
+    apply: Option<Content<'_>>,
 ) -> Result<Answer> {
     check_memory(campaign)?;
     let options = Options::default();

@@ -45,8 +45,9 @@ class Error(Exception):
         self.hint = None if hint is None else in_python(_rodcal.visible(hint))
         self.code = errno
         if isinstance(self, OSError):
-            self.errno, self.filename = errno, file
-            self.strerror = self.message if errno is None else os.strerror(errno)
+            reason = self.message if errno is None else os.strerror(errno)
+            for name, value in (("errno", errno), ("filename", file), ("strerror", reason)):
+                setattr(self, name, value)
 
     def __reduce__(self) -> tuple[Any, ...]:
         own = (self.message, self.file, self.line, self.column, self.found, self.expected, self.hint, self.code)

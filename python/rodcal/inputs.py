@@ -429,7 +429,9 @@ def joint_table(joints: Any, columns: list[str], name: str) -> tuple[str, str]:
 def joint_array(joints: Any, count: int, name: str) -> Array:
     """Poses as an array of shape (n, joints); one pose may be a row of numbers."""
     if isinstance(joints, np.ma.MaskedArray):
-        joints = joints.astype(np.float64).filled(np.nan)
+        plain = np.array(joints.data, dtype=np.float64)
+        plain[np.ma.getmaskarray(joints)] = np.nan
+        joints = plain
     array = np.atleast_2d(np.asarray(joints, dtype=np.float64))
     if array.ndim != 2 or array.shape[1] != count:
         found, expected = f"of shape {np.shape(joints)}", f"of shape (n, {count}): a column for each joint"

@@ -55,6 +55,9 @@ pub use urdf::Written;
 
 use nalgebra::Vector3;
 
+use crate::delimited::Row;
+use crate::error::Result;
+use crate::limits;
 use crate::spatial::Pose;
 use crate::units::{DEG, MM};
 
@@ -130,6 +133,19 @@ impl Joint {
             Motion::Revolute => (format!("q{number}_deg"), DEG),
             Motion::Prismatic => (format!("q{number}_mm"), MM),
         }
+    }
+}
+
+/// A joint's value in its column of a table, degrees or mm.
+///
+/// # Errors
+/// [`Error::Input`](crate::Error::Input) where it is no number, or larger than
+/// [`limits::JOINT_VALUE`].
+pub fn joint_value(row: Row<'_>, column: &str) -> Result<f64> {
+    let value = row.required_number(column)?;
+    match value.abs() <= limits::JOINT_VALUE as f64 {
+        true => Ok(value),
+        false => Err(row.error(column, format!("a value of at most {} in size", limits::JOINT_VALUE), None)),
     }
 }
 

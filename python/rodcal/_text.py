@@ -5,8 +5,6 @@ Numbers are written in as many digits as bring back the same number.
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import re
 from collections.abc import Iterable, Mapping
@@ -54,27 +52,47 @@ def csv_text(table: Any, name: str) -> str:
 
     A column of shape (n, k) stands for k columns: ``q_deg`` for ``q1_deg`` … ``qk_deg``,
     ``xyz_mm`` for ``x_mm``, ``y_mm``, ``z_mm``, ``dxyz_um`` for ``dx_um``, ``dy_um``, ``dz_um``.
-    ``None`` and NaN are blanks.
+    ``None``, NaN and masked values are blanks.
     """
+    return csv_of(columns_of(table, name))
+
+
+def columns_of(table: Any, name: str) -> dict[str, list[str]]:
+    """The cells of a table by the names of its columns, which are as long as one another."""
     columns: dict[str, list[str]] = {}
+
+    def add(column: str, cells: list[str]) -> None:
+        # the reader takes upper and lower case for the same
+        if any(column.lower() == other.lower() for other in columns):
+            raise _wrong(name, column, "there twice", "every column once")
+        columns[column] = cells
+
     for key, values in _columns(table, name):
-        array = np.asarray(values)
+        array = _array(values)
         if array.ndim == 2:
             for part, column in zip(_parts(key, array.shape[1], name), array.T):
-                columns[part] = _cells(column)
+                add(part, _cells(column))
         elif array.ndim == 1:
-            columns[key] = _cells(array)
+            add(key, _cells(array))
         else:
             raise _wrong(name, key, f"of shape {array.shape}", "one number or text for each row")
     lengths = {len(cells) for cells in columns.values()}
     if len(lengths) > 1:
         found = ", ".join(f"{key}: {len(cells)}" for key, cells in columns.items())
         raise _wrong(name, "columns", f"of different lengths ({found})", "one length for all columns")
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(zip(*columns.values()))
-    return out.getvalue()
+    return columns
+
+
+def csv_of(columns: Mapping[str, list[str]]) -> str:
+    """Columns of cells as CSV."""
+    rows = [tuple(columns), *zip(*columns.values())]
+    return "".join(",".join(map(_quoted, row)) + "\n" for row in rows)
+
+
+def _quoted(cell: str) -> str:
+    """A cell that stays one: no comment, no two cells, no line's end."""
+    is_plain = cell == cell.strip() and not any(mark in cell for mark in ',;"#\t\r\n')
+    return cell if is_plain else '"' + cell.replace('"', '""') + '"'
 
 
 def _columns(table: Any, name: str) -> Iterable[tuple[str, Any]]:
@@ -83,9 +101,23 @@ def _columns(table: Any, name: str) -> Iterable[tuple[str, Any]]:
     if isinstance(table, np.ndarray) and table.dtype.names is not None:
         return [(key, table[key]) for key in table.dtype.names]
     if hasattr(table, "columns") and hasattr(table, "__getitem__"):
+        keys = [str(key) for key in table.columns]
+        for key in keys:
+            if keys.count(key) > 1:
+                raise _wrong(name, key, "there twice", "every column once")
         return [(str(key), table[key].to_numpy()) for key in table.columns]
     expected = "a dict of columns, a structured array or a DataFrame"
     raise _wrong(name, "table", f"a {type(table).__name__}", expected)
+
+
+def _array(values: Any) -> np.ndarray[Any, Any]:
+    """Values as an array; what is masked is ``None``."""
+    if isinstance(values, np.ma.MaskedArray):
+        # filled(None) would fill in what numpy thinks of
+        plain: np.ndarray[Any, Any] = values.data.astype(object)
+        plain[np.ma.getmaskarray(values)] = None
+        return plain
+    return np.asarray(values)
 
 
 def _parts(key: str, count: int, name: str) -> list[str]:
@@ -103,10 +135,12 @@ def _cells(array: np.ndarray[Any, Any]) -> list[str]:
 
 def _cell(value: Any) -> str:
     # pandas' NA says neither yes nor no
-    if value is None or type(value).__name__ in ("NAType", "NaTType"):
+    if value is None or value is np.ma.masked or type(value).__name__ in ("NAType", "NaTType"):
         return ""
     if isinstance(value, float):
         return "" if value != value else repr(value)
+    if isinstance(value, bytes):
+        return value.decode()
     return str(value)
 
 

@@ -18,6 +18,7 @@ from . import _rodcal, _text
 from ._errors import InputError, warn
 from ._progress import Progress, Told
 from .inputs import (
+    Array,
     Campaign,
     PathLike,
     Readings,
@@ -28,6 +29,7 @@ from .inputs import (
     as_readings,
     as_robot,
     as_rod,
+    joint_array,
     joint_table,
 )
 from .results import (
@@ -96,6 +98,7 @@ def rig_fit(
     theory: Theory = "timoshenko",
     elements: int = 200,
     robust: Weights = "none",
+    progress: Progress = False,
 ) -> RigFitResult:
     """How much a rod really bends, from readings under known loads: lines, r, measured C^F and C^g.
 
@@ -108,7 +111,9 @@ def rig_fit(
     [46.3, 40.4]
     """
     model = None if rod is None else as_rod(rod)._native
-    answer = _rodcal.rig_fit(model, as_readings(readings)._native, theory, elements, robust)
+    native = as_readings(readings)._native
+    with Told(progress, "fitting lines") as tell:
+        answer = _rodcal.rig_fit(model, native, theory, elements, robust, tell)
     warn(answer.warnings)
     return RigFitResult(answer)
 
@@ -190,8 +195,7 @@ def diagnose_calibration(
 ) -> DiagnosisResult:
     """Which physics of robot, rod, fixture or procedure a calibration leaves out.
 
-    With ``apply`` the corrected robot and campaign are among ``files``; the campaign has to be one
-    of files then.
+    With ``apply`` the corrected robot and campaign are among ``files``.
 
     >>> found = diagnose_calibration("campaigns/tx90-5/campaign.toml")
     >>> found.verdict, round(found.noise_um, 1)
@@ -208,7 +212,7 @@ def predict(
     robot: RobotLike,
     joints_deg: ArrayLike,
     *,
-    tool_mm: Sequence[float] | None = None,
+    tool_mm: Sequence[float] | Array | None = None,
     aligned: bool = False,
     progress: Progress = False,
 ) -> PredictionResult:
@@ -224,12 +228,9 @@ def predict(
     >>> predict(arm, [[0.0, 90.0]]).tips_mm.round(9).tolist()
     [[400.0, 300.0, 0.0]]
     """
-    joints = np.atleast_2d(np.asarray(joints_deg, dtype=np.float64))
-    if joints.ndim != 2:
-        found, expected = f"of shape {joints.shape}", "an array of shape (n, joints)"
-        raise InputError(f"`joints_deg` is {found}, expected {expected}", found=found, expected=expected)
-    tool = None if tool_mm is None else [float(x) for x in tool_mm]
     native = as_robot(robot)._native
+    joints = joint_array(joints_deg, len(native.columns), "`joints_deg`")
+    tool = None if tool_mm is None else [float(x) for x in tool_mm]
     with Told(progress, "predicting") as tell:
         return PredictionResult(_rodcal.predict(native, joints, tool, aligned, tell))
 
@@ -347,7 +348,7 @@ def design_poses(
     repeatability_um: float | None = None,
     instrument_um: float = 0.0,
     at: ArrayLike | Table | PathLike | None = None,
-    volume_mm: Sequence[float] | None = None,
+    volume_mm: Sequence[float] | Array | None = None,
     seed: int = 1,
     progress: Progress = False,
 ) -> PoseDesignResult:
@@ -411,7 +412,7 @@ def forecast(
     repeatability_um: float | None = None,
     instrument_um: float = 0.0,
     at: ArrayLike | Table | PathLike | None = None,
-    volume_mm: Sequence[float] | None = None,
+    volume_mm: Sequence[float] | Array | None = None,
     seed: int = 1,
     progress: Progress = False,
 ) -> ForecastResult:
@@ -439,7 +440,7 @@ def _expected(
     repeatability_um: float | None,
     instrument_um: float,
     at: Any,
-    volume_mm: Sequence[float] | None,
+    volume_mm: Sequence[float] | Array | None,
 ) -> dict[str, Any]:
     """What a forecast assumes."""
     return {

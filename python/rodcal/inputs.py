@@ -51,7 +51,7 @@ class Rod:
     @classmethod
     def from_toml(cls, text: str) -> Rod:
         """A rod from the text of a rod file."""
-        return cls._of(_rodcal.Rod.from_text("<rod>", text))
+        return cls._of(_rodcal.Rod.from_text("<toml>", text))
 
     @classmethod
     def _of(cls, native: _rodcal.Rod) -> Rod:
@@ -201,7 +201,7 @@ class Robot:
     ) -> Robot:
         """A robot from the text of a robot file or of a URDF, with the text of what stands beside it."""
         beside = None if effects is None else ("<effects>", effects)
-        return cls._of(_rodcal.Robot.from_text("<robot>", text, base_link, tip_link, beside, None))
+        return cls._of(_rodcal.Robot.from_text("<text>", text, base_link, tip_link, beside, None))
 
     @classmethod
     def _of(cls, native: _rodcal.Robot) -> Robot:
@@ -379,12 +379,11 @@ def _name_robot(keys: dict[str, Any], texts: dict[str, str]) -> None:
 
 def _recorded(table: Table, name: str) -> str:
     """A recording as CSV; poses without names are numbered."""
-    text = _text.csv_text(table, name)
-    header, *rows = text.splitlines()
-    if "pose" in header.split(","):
-        return text
-    numbered = (f"{number},{row}" for number, row in enumerate(rows, start=1))
-    return "\n".join([f"pose,{header}", *numbered]) + "\n"
+    columns = _text.columns_of(table, name)
+    if columns and not any(key.lower() == "pose" for key in columns):
+        count = len(next(iter(columns.values())))
+        columns = {"pose": [str(number) for number in range(1, count + 1)], **columns}
+    return _text.csv_of(columns)
 
 
 def as_rod(rod: Rod | Mapping[str, Any] | PathLike) -> Rod:
@@ -421,8 +420,20 @@ def joint_table(joints: Any, columns: list[str], name: str) -> tuple[str, str]:
     """Poses as a named table: an array of shape (n, joints), a table with joint columns, or a file."""
     if isinstance(joints, (str, os.PathLike)):
         return os.fspath(joints), _rodcal.read_text(os.fspath(joints))
-    if isinstance(joints, Mapping) or hasattr(joints, "columns") or getattr(joints, "dtype", None) is not None and joints.dtype.names:
+    if isinstance(joints, Mapping) or hasattr(joints, "columns") or getattr(getattr(joints, "dtype", None), "names", None):
         return name, _recorded(joints, name)
-    array = np.asarray(joints, dtype=np.float64)
+    array = joint_array(joints, len(columns), name)
     return name, _recorded({column: array[:, k] for k, column in enumerate(columns)}, name)
 
+
+def joint_array(joints: Any, count: int, name: str) -> Array:
+    """Poses as an array of shape (n, joints); one pose may be a row of numbers."""
+    if isinstance(joints, np.ma.MaskedArray):
+        plain = np.array(joints.data, dtype=np.float64)
+        plain[np.ma.getmaskarray(joints)] = np.nan
+        joints = plain
+    array = np.atleast_2d(np.asarray(joints, dtype=np.float64))
+    if array.ndim != 2 or array.shape[1] != count:
+        found, expected = f"of shape {np.shape(joints)}", f"of shape (n, {count}): a column for each joint"
+        raise InputError(f"{name} is {found}, expected {expected}", found=found, expected=expected)
+    return array

@@ -7,6 +7,7 @@ no number.
 from __future__ import annotations
 
 import functools
+import math
 import os
 import types
 import typing
@@ -16,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 
 from . import _rodcal
+from ._errors import in_python
 from .inputs import Array, Campaign, PathLike, Robot
 
 if TYPE_CHECKING:
@@ -53,6 +55,8 @@ def _as(kind: Any, value: Any, name: str) -> Any:
         return None if value is None else _as(inner, value, name)
     if kind is Any:
         return value
+    if value is None and kind is float:
+        return math.nan
     if value is None:
         raise TypeError(f"the answer has no {name}")
     if kind == Array:
@@ -83,17 +87,17 @@ class Result(Record):
     @property
     def title(self) -> str:
         """What was done."""
-        return self._answer.title
+        return in_python(self._answer.title)
 
     @property
     def headline(self) -> str:
         """The answer in a sentence or two, with numbers and units."""
-        return self._answer.headline
+        return in_python(self._answer.headline)
 
     @property
     def warnings(self) -> list[str]:
         """What has to be known before it is trusted."""
-        return self._answer.warnings
+        return [in_python(warning) for warning in self._answer.warnings]
 
     @property
     def files(self) -> dict[str, bytes]:
@@ -110,11 +114,11 @@ class Result(Record):
 
     def to_html(self) -> str:
         """The report as a piece of a page."""
-        return self._answer.html()
+        return in_python(self._answer.html())
 
     def to_text(self, columns: int = 100) -> str:
         """The report as the command prints it."""
-        return self._answer.text(columns)
+        return in_python(self._answer.text(columns))
 
     def write(self, directory: PathLike, *, force: bool = False) -> None:
         """Writes the report into a folder, as ``--out`` does: page, pictures, tables, ``result.json``.
@@ -305,7 +309,7 @@ class Calibrated(Record):
     noise_is_stated: bool
     validation: Errors | None
     cross_validation: Errors | None
-    condition: float
+    condition: float | None
     observability: dict[str, Any]
 
 
@@ -467,6 +471,9 @@ class PredictionResult(Result):
 
     def __init__(self, predicted: _rodcal.Predicted) -> None:
         self._predicted = predicted
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return PredictionResult, (self._predicted,)
 
     @functools.cached_property
     def _answer(self) -> _rodcal.Answer:  # type: ignore[override]

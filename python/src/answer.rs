@@ -1,9 +1,11 @@
 //! An answer of the library, for Python.
 
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
+use rodcal::delimited;
 use rodcal::files::{self, Existing};
-use rodcal::report::{html, text};
+use rodcal::report::{Report, html, text};
 use serde_json::Value;
 
 use crate::errors::IntoPython;
@@ -14,6 +16,36 @@ pub struct Answer(pub rodcal::answer::Answer);
 
 #[pymethods]
 impl Answer {
+    /// An answer that was pickled.
+    #[staticmethod]
+    fn restored(report: &[u8], json: &[u8], files: Vec<(String, Vec<u8>)>, status: u8) -> PyResult<Answer> {
+        let wrong = |error: &dyn std::fmt::Display| PyValueError::new_err(error.to_string());
+        let report: Report = rmp_serde::from_slice(report).map_err(|error| wrong(&error))?;
+        let json = rmp_serde::from_slice(json).map_err(|error| wrong(&error))?;
+        let mut answer = rodcal::answer::Answer::new(json, report);
+        (answer.files, answer.status) = (files, status);
+        Ok(Answer(answer))
+    }
+
+    /// Pickled to the last bit: the text of a number may be read as its neighbour, and JSON has no
+    /// words for numbers that are not finite.
+    #[allow(clippy::type_complexity)]
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(
+        Bound<'py, PyAny>,
+        (Bound<'py, PyBytes>, Bound<'py, PyBytes>, Vec<(String, Bound<'py, PyBytes>)>, u8),
+    )> {
+        let own = &self.0;
+        let wrong = |error: rmp_serde::encode::Error| PyValueError::new_err(error.to_string());
+        let report = rmp_serde::to_vec(&own.report).map_err(wrong)?;
+        let json = rmp_serde::to_vec(&own.json).map_err(wrong)?;
+        let files = own.files.iter().map(|(name, content)| (name.clone(), PyBytes::new(py, content)));
+        let parts = (PyBytes::new(py, &report), PyBytes::new(py, &json), files.collect(), own.status);
+        Ok((py.get_type::<Answer>().getattr("restored")?, parts))
+    }
+
     /// The JSON that the command prints with `--json`.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         python(py, &self.0.whole_json())
@@ -26,25 +58,25 @@ impl Answer {
 
     /// The report as the command prints it, in so many columns.
     fn text(&self, columns: usize) -> String {
-        text::text_within(&self.0.report, columns)
+        delimited::visible_lines(&text::text_within(&self.0.report, columns)).into_owned()
     }
 
     /// What was done.
     #[getter]
-    fn title(&self) -> &str {
-        &self.0.report.title
+    fn title(&self) -> String {
+        delimited::visible(&self.0.report.title).into_owned()
     }
 
     /// The answer in a sentence or two.
     #[getter]
-    fn headline(&self) -> &str {
-        &self.0.report.headline
+    fn headline(&self) -> String {
+        delimited::visible(&self.0.report.headline).into_owned()
     }
 
     /// What has to be known before it is trusted.
     #[getter]
     fn warnings(&self) -> Vec<String> {
-        self.0.report.warnings.clone()
+        self.0.report.warnings.iter().map(|warning| delimited::visible(warning).into_owned()).collect()
     }
 
     /// Exit status of the command.

@@ -20,7 +20,7 @@ use rodcal::units::{MM, UM};
 
 use crate::answer::{Answer, by_name, python};
 use crate::arguments::{choice, within};
-use crate::errors::{IntoPython, raised, wrong};
+use crate::errors::{IntoPython, wrong};
 use crate::inputs::{Campaign, Robot, Rod};
 use crate::work::{Progress, run};
 
@@ -121,17 +121,12 @@ pub fn diagnose_calibration(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Answer> {
     let own = campaign.get();
-    if apply && !own.is_file {
-        let error = rodcal::Error::NotApplicable {
-            what: "apply=True".into(),
-            why: "the campaign was built in memory, and its corrected copy names files".into(),
-            hint: "write the campaign's files and read them with Campaign.read".into(),
-        };
-        return Err(raised(py, error));
-    }
+    let content = |name: &str| own.content(name);
+    let apply = apply.then_some(&content as &(dyn Fn(&str) -> rodcal::Result<Vec<u8>> + Sync));
     let campaign = &own.campaign;
     let mode = mode_named(py, mode)?.unwrap_or_else(|| default_mode(campaign));
     run(py, progress, Progress::of_jobs(), |_| {
+        let apply = apply.map(|content| content as &dyn Fn(&str) -> rodcal::Result<Vec<u8>>);
         answer::diagnose_calibration(campaign, mode, &neighbours(own), apply)
     })
     .map(Answer)
@@ -202,9 +197,13 @@ pub fn predict(
         .into_iter()
         .flat_map(|row| row.iter().zip(&units).map(|(value, unit)| value * unit).collect::<Vec<f64>>())
         .collect();
-    let is_finite = values.iter().chain(tool_mm.iter().flatten()).all(|value| value.is_finite());
-    if !is_finite {
-        return Err(wrong(py, "joints", "not finite".into(), "finite numbers".into()));
+    let is_value = |value: &f64| value.abs() <= limits::JOINT_VALUE as f64;
+    if let Some(value) = view.iter().find(|value| !is_value(value)) {
+        let expected = format!("numbers of at most {} in size", limits::JOINT_VALUE);
+        return Err(wrong(py, "joints_deg", format!("{value} in one place"), expected));
+    }
+    if tool_mm.iter().flatten().any(|value| !value.is_finite()) {
+        return Err(wrong(py, "tool_mm", "not finite".into(), "finite numbers".into()));
     }
     run(py, progress, Progress::of_jobs(), |_| {
         let moved = robot.after_moves(&values);

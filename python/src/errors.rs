@@ -2,6 +2,13 @@
 
 use pyo3::prelude::*;
 use rodcal::Error;
+use rodcal::delimited::visible_lines;
+
+/// `text` with everything escaped that a terminal would obey.
+#[pyfunction]
+pub fn visible(text: &str) -> String {
+    visible_lines(text).into_owned()
+}
 
 /// Inputs that were dicts: lines and columns of the text between would help nobody. Tables keep
 /// their lines, for those are their rows.
@@ -27,9 +34,10 @@ pub fn raised(py: Python<'_>, mut error: Error) -> PyErr {
         (at.line, at.column) = (0, 0);
     }
     let (mut file, mut line, mut column) = (None, 0, 0);
-    let (mut found, mut expected) = (None, None);
+    let (mut found, mut expected, mut errno) = (None, None, None);
     let kind = match &error {
-        Error::File { path, .. } => {
+        Error::File { path, source, .. } => {
+            errno = source.raw_os_error();
             file = Some(path.display().to_string());
             "file"
         }
@@ -54,7 +62,8 @@ pub fn raised(py: Python<'_>, mut error: Error) -> PyErr {
         _ => "numerical",
     };
     let known = |number: usize| (number > 0).then_some(number);
-    let words = (kind, error.to_string(), file, known(line), known(column), found, expected, error.hint());
+    let words =
+        (kind, error.to_string(), file, known(line), known(column), found, expected, error.hint(), errno);
     let exception = py.import("rodcal._errors").and_then(|module| module.getattr("raised")?.call1(words));
     exception.map_or_else(|failed| failed, PyErr::from_value)
 }

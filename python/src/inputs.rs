@@ -226,6 +226,17 @@ pub struct Campaign {
 }
 
 impl Campaign {
+    /// The content of a file that it names.
+    pub fn content(&self, name: &str) -> Result<Vec<u8>> {
+        match self.texts.get(name) {
+            Some(text) => Ok(text.clone().into_bytes()),
+            None => {
+                let directory = Path::new(&self.campaign.file).parent().unwrap_or(Path::new(""));
+                files::read_bytes(&directory.join(name))
+            }
+        }
+    }
+
     fn of(
         file: &str,
         text: String,

@@ -26,6 +26,7 @@ fn _rodcal(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<inputs::Readings>()?;
     module.add_class::<inputs::Robot>()?;
     module.add_class::<inputs::Campaign>()?;
+    module.add_function(wrap_pyfunction!(errors::visible, module)?)?;
     module.add_function(wrap_pyfunction!(inputs::read_text, module)?)?;
     module.add_function(wrap_pyfunction!(rods::compliance, module)?)?;
     module.add_function(wrap_pyfunction!(rods::rig_fit, module)?)?;

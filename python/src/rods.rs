@@ -60,6 +60,7 @@ pub fn rig_fit(
     theory: &str,
     elements: usize,
     robust: &str,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Answer> {
     let scale = RobustScale::Mad;
     let weights = [
@@ -74,7 +75,7 @@ pub fn rig_fit(
     };
     let rod = rod.map(|rod| &rod.get().rod);
     let readings = &readings.get().readings;
-    run(py, None, Progress::default(), |_| answer::rig_fit(readings, rod, &options)).map(Answer)
+    run(py, progress, Progress::of_jobs(), |_| answer::rig_fit(readings, rod, &options)).map(Answer)
 }
 
 #[pyfunction]

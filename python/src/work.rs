@@ -5,7 +5,7 @@
 //! stopped ends where its next job begins (`rodcal::parallel`), and leaves nothing behind.
 
 use std::panic::resume_unwind;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread::{Builder, scope};
 use std::time::Duration;
@@ -20,6 +20,22 @@ use crate::errors::IntoPython;
 const TICK: Duration = Duration::from_millis(100);
 /// Of the thread that works: what a program's first thread usually has.
 const STACK: usize = 8 << 20;
+
+/// The process whose threads work; 0 before the first work.
+static PROCESS: AtomicU32 = AtomicU32::new(0);
+
+/// Refuses work in a process that was forked from one that had worked: a fork takes none of the
+/// threads with it, and what waits for them waits for ever.
+fn check_process() -> PyResult<()> {
+    let own = std::process::id();
+    match PROCESS.compare_exchange(0, own, Ordering::Relaxed, Ordering::Relaxed) {
+        Err(first) if first != own => Err(PyRuntimeError::new_err(
+            "this process was forked from one that had used rodcal, whose threads are not here; start it by \
+             multiprocessing.get_context(\"spawn\") (or \"forkserver\"), or use rodcal in neither before the fork",
+        )),
+        _ => Ok(()),
+    }
+}
 
 /// How far the work is: what it counts itself, else the library's jobs.
 #[derive(Default)]
@@ -55,6 +71,7 @@ pub fn run<T: Send>(
     counted: Progress,
     work: impl FnOnce(&Progress) -> rodcal::Result<T> + Send,
 ) -> PyResult<T> {
+    check_process()?;
     let (stop, counted) = (Stop::default(), &counted);
     let tell = |py: Python<'_>| -> PyResult<()> {
         let Some(progress) = &progress else { return Ok(()) };

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import pathlib
+import pickle
 import signal
 import subprocess
 import sys
@@ -68,10 +70,10 @@ WRONG: list[tuple[type[rodcal.Error], Callable[[], Any]]] = [
         rodcal.NotApplicableError,
         lambda: rodcal.predict("builtin:tx90", np.zeros((2, 6)), aligned=True),
     ),
-    (
-        rodcal.NotApplicableError,
-        lambda: rodcal.diagnose_calibration(rodcal.simulate("rods/5.toml", poses=6).campaign(), apply=True),
-    ),
+    (rodcal.InputError, lambda: rodcal.predict("builtin:tx90", np.full((1, 6), 1e300))),
+    (rodcal.InputError, lambda: rodcal.design_poses(TX90, 20, at=np.zeros((3, 7)))),
+    (rodcal.InputError, lambda: rodcal.design_poses(TX90, 20, at=np.zeros((3, 5)))),
+    (rodcal.InputError, lambda: rodcal.Readings({"axis": ["x"], "load_n": [1.0], "dxyz_um": [[1.0] * 3], "dx_um": [2.0]})),
 ]
 
 
@@ -80,6 +82,47 @@ def test_what_cannot_be_is_refused(kind: type[rodcal.Error], ask: Callable[[], A
     with pytest.raises(kind) as caught:
         ask()
     assert str(caught.value)
+
+
+def test_a_file_error_is_an_os_error_of_python() -> None:
+    with pytest.raises(rodcal.FileError) as caught:
+        rodcal.Rod.read("nowhere.toml")
+    assert (caught.value.errno, caught.value.filename) == (errno.ENOENT, "nowhere.toml")
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert (type(again), str(again), again.errno) == (rodcal.FileError, str(caught.value), errno.ENOENT)
+
+
+def test_what_a_terminal_would_obey_is_escaped() -> None:
+    name = "\x1b[31m\u202e\x9b"
+    with pytest.raises(rodcal.Error) as caught:
+        rodcal.Rod.read(f"no{name}.toml")
+    text = pathlib.Path("rods/5.toml").read_text().replace("5#", "\\u001b[31m\\u202e\\u009b")
+    result = rodcal.compliance(rodcal.Rod.from_toml(text))
+    for shown in (str(caught.value), str(result), repr(result), result.headline, result.title):
+        assert not any(mark in shown for mark in ("\x1b", "\u202e", "\x9b")), shown
+
+
+def test_a_hint_speaks_of_the_package(tmp_path: pathlib.Path) -> None:
+    result = rodcal.compliance("rods/5.toml")
+    (tmp_path / "index.html").write_text("mine")
+    with pytest.raises(rodcal.Error) as caught:
+        result.write(tmp_path)
+    assert "force=True" in str(caught.value) and "--" not in str(caught.value)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork")
+def test_work_after_a_fork_is_refused() -> None:
+    code = (
+        "import os, rodcal\n"
+        "rodcal.compliance('rods/5.toml')\n"
+        "if os.fork() == 0:\n"
+        "    try: rodcal.compliance('rods/5.toml')\n"
+        "    except RuntimeError as error: os._exit(7 if 'spawn' in str(error) else 8)\n"
+        "    os._exit(9)\n"
+        "print(os.waitstatus_to_exitcode(os.wait()[1]))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout == "7\n"
 
 
 def test_a_table_needs_pandas_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

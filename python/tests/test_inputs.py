@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import pathlib
+import pickle
 import sys
 from typing import Any
 
@@ -150,3 +151,32 @@ def test_designs_from_dicts_and_poses_from_arrays() -> None:
     chosen = rodcal.design_poses(TX90, 20, candidates=generated.joints_deg, at=generated.joints_deg)
     rows = {row.tobytes() for row in generated.joints_deg}
     assert all(row.tobytes() in rows for row in chosen.joints_deg)
+
+
+def test_no_row_is_lost_and_no_mask() -> None:
+    columns = _columns("campaigns/tx90-5/measurements.csv")
+    table: dict[str, Any] = {key: cells if key in ("pose", "clamp") else _numbers(cells) for key, cells in columns.items()}
+    table["pose"] = ["#0", *table["pose"][1:]]
+    keys = {**_keys(), "measurements": table}
+    del keys["validation"]
+    assert rodcal.Campaign(keys).poses == len(table["pose"])
+    masked = np.ma.MaskedArray([1.0, 2.0, 3.0], mask=[False, False, True])
+    readings = rodcal.Readings({"axis": ["y", "y", "y"], "load_n": [1.0, 2.0, 3.0], "trial": ["#1", "2", "3"], "dy_um": masked, "dz_um": [0.0] * 3})
+    assert len(readings) == 3
+
+
+def test_results_can_be_pickled() -> None:
+    campaign = rodcal.simulate("rods/5.toml", poses=6, validation=10).campaign()
+    fitted = rodcal.calibrate(campaign)
+    again = pickle.loads(pickle.dumps(fitted))
+    assert again.to_dict() == fitted.to_dict() and str(again) == str(fitted)
+    assert again.to_html() == fitted.to_html()
+
+
+def test_a_diagnosis_of_a_campaign_in_memory_is_applied() -> None:
+    table: dict[str, Any] = dict(_columns("campaigns/tx90-5/measurements.csv"))
+    table["q4_deg"] = np.deg2rad(_numbers(table["q4_deg"]))
+    keys = {**_keys(), "measurements": table}
+    del keys["validation"]
+    found = rodcal.diagnose_calibration(rodcal.Campaign(keys), apply=True)
+    assert any(name.endswith("campaign.toml") for name in found.files), list(found.files)

@@ -8,9 +8,9 @@ use crate::calibration::{Campaign, Mode, Options};
 use crate::diagnosis::calibration::{Neighbours, check_memory, mend};
 use crate::diagnosis::rig::{OwnEffect, diagnose_with};
 use crate::error::Result;
-use crate::files;
 use crate::report::diagnosis as reports;
 use crate::rig::readings::Readings;
+use crate::robot::is_urdf;
 use crate::rod::Rod;
 
 /// What the readings show that the model of `rod` leaves out, or straight lines without one.
@@ -62,9 +62,12 @@ pub fn diagnose_rig_with(
     Ok(answer)
 }
 
+/// The bytes of a file that a campaign names, by the name that stands there.
+pub type Content<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>>;
+
 /// What the residuals of a calibration show that its model leaves out. `others` are files that may
-/// have been meant. With `apply`, the corrected robot and campaign are its files, where something
-/// can be corrected.
+/// have been meant. With `apply`, the content of a file that the campaign names, the corrected
+/// robot and campaign are its files, where something can be corrected.
 ///
 /// # Errors
 /// As [`mend`] and what calibrates; [`crate::Error::File`] where a file that is copied cannot be
@@ -73,7 +76,7 @@ pub fn diagnose_calibration(
     campaign: &Campaign,
     mode: Mode,
     others: &Neighbours,
-    apply: bool,
+    apply: Option<Content<'_>>,
 ) -> Result<Answer> {
     check_memory(campaign)?;
     let options = Options::default();
@@ -82,19 +85,22 @@ pub fn diagnose_calibration(
     let mut report = reports::calibration::report(&found);
     report.provenance = provenance(campaign);
     let mut json = reports::calibration::json(&found);
-    let applied = if apply { mended.apply(&found, &names(&mended.campaign))? } else { None };
+    let applied = match apply {
+        Some(_) => mended.apply(&found, &names(&mended.campaign))?,
+        None => None,
+    };
     match &applied {
         Some(applied) => reports::calibration::applied(&mut report, &mut json, applied),
-        None if apply => report
+        None if apply.is_some() => report
             .warnings
             .push("--apply has no effect: nothing was found that belongs to the robot or can be corrected in the campaign".into()),
         None => reports::calibration::announced(&mut report, &found),
     }
     let mut answer = Answer::new(json, report);
-    if let Some(applied) = applied {
+    if let (Some(applied), Some(content)) = (applied, apply) {
         answer.files = applied.files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect();
         // what was not written anew is copied
-        for copy in copies(&mended.campaign)? {
+        for copy in copies(&mended.campaign, content)? {
             if answer.files.iter().all(|(name, _)| *name != copy.0) {
                 answer.files.push(copy);
             }
@@ -104,39 +110,47 @@ pub fn diagnose_calibration(
     Ok(answer)
 }
 
-/// What a corrected campaign calls its files: all of them stand beside it.
+/// What a corrected campaign calls its files: all of them stand beside it. What was built in memory
+/// has no name of its own (`<rod>`).
 fn names(campaign: &Campaign) -> FileNames {
-    let base = |name: &str| {
-        let end = Path::new(name).file_name();
-        end.map_or_else(|| name.to_owned(), |end| end.to_string_lossy().into_owned())
+    let base = |name: &str, usual: &str| match name.starts_with('<') {
+        true => usual.to_owned(),
+        false => Path::new(name)
+            .file_name()
+            .map_or_else(|| name.to_owned(), |end| end.to_string_lossy().into_owned()),
     };
-    let is_builtin = campaign.robot_file.starts_with("builtin:");
+    let robot = match campaign.robot_file.starts_with("builtin:") {
+        true => campaign.robot_file.clone(),
+        false if is_urdf(&campaign.robot_text) => base(&campaign.robot_file, "robot.urdf"),
+        false => base(&campaign.robot_file, "robot.toml"),
+    };
     FileNames {
-        effects: campaign.effects_file.as_deref().map(base),
-        robot: if is_builtin { campaign.robot_file.clone() } else { base(&campaign.robot_file) },
-        rod: campaign.rod_file.as_deref().map(base),
-        rig: campaign.readings.as_ref().map(|readings| base(&readings.file)),
+        effects: campaign.effects_file.as_deref().map(|name| base(name, "effects.toml")),
+        robot,
+        rod: campaign.rod_file.as_deref().map(|name| base(name, "rod.toml")),
+        rig: campaign.readings.as_ref().map(|readings| base(&readings.file, "readings.csv")),
         measurements: "measurements.csv".into(),
         validation: campaign.validation.as_ref().map(|_| "validation.csv".into()),
     }
 }
 
 /// Robot, rod and readings as they are, for a corrected campaign in another folder.
-fn copies(campaign: &Campaign) -> Result<Vec<(String, Vec<u8>)>> {
+fn copies(campaign: &Campaign, content: &dyn Fn(&str) -> Result<Vec<u8>>) -> Result<Vec<(String, Vec<u8>)>> {
     let names = names(campaign);
-    let directory = Path::new(&campaign.file).parent().unwrap_or(Path::new(""));
     let mut copies = Vec::new();
     if let (Some(name), Some(file)) = (names.effects, &campaign.effects_file) {
-        copies.push((name, files::read_bytes(&directory.join(file))?));
+        copies.push((name, content(file)?));
     }
     if !campaign.robot_file.starts_with("builtin:") {
         copies.push((names.robot, campaign.robot_text.clone().into_bytes()));
     }
     if let (Some(name), Some(file)) = (names.rod, &campaign.rod_file) {
-        copies.push((name, files::read_bytes(&directory.join(file))?));
+        copies.push((name, content(file)?));
     }
     if let (Some(name), Some(readings)) = (names.rig, &campaign.readings) {
-        copies.push((name, files::read_bytes(Path::new(&readings.file))?));
+        let directory = Path::new(&campaign.file).parent().unwrap_or(Path::new(""));
+        let file = Path::new(&readings.file);
+        copies.push((name, content(&file.strip_prefix(directory).unwrap_or(file).to_string_lossy())?));
     }
     Ok(copies)
 }

@@ -3,10 +3,10 @@
 //! Data coordinates are whatever the axis labels say; the unit belongs into the label, for example
 //! "load / N". Points that are not finite are skipped when the chart is drawn.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// One pair of axes with everything drawn on them.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Chart {
     /// What the chart shows, in a few words; stands above it.
     pub title: String,
@@ -38,7 +38,7 @@ impl Chart {
 }
 
 /// Several charts in one picture, or just one (`Figure::from(chart)`).
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Figure {
     /// Short name for files, for example "load-deflection".
     pub name: String,
@@ -76,7 +76,7 @@ impl From<Chart> for Figure {
 }
 
 /// One axis of a chart.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Axis {
     /// Quantity and unit, for example "deflection / µm".
     pub label: String,
@@ -105,7 +105,7 @@ impl Axis {
 }
 
 /// What an axis spans.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub enum Range {
     /// All data, rounded outwards to whole ticks.
     #[default]
@@ -118,7 +118,7 @@ pub enum Range {
 
 /// Something drawn on a chart. A mark with an empty label is left out of the legend;
 /// marks that share a label share its entry.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Mark {
     /// Points joined by straight lines.
     Line {
@@ -231,7 +231,7 @@ pub enum Mark {
 }
 
 /// Where a text is, seen from its point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Align {
     /// It ends there.
     Left,
@@ -242,7 +242,7 @@ pub enum Align {
 }
 
 /// One point with an optional error bar.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// x.
     pub x: f64,
@@ -253,7 +253,7 @@ pub struct Point {
 }
 
 /// One bar from `base` to `value`.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Bar {
     /// Where the bar begins on the axis it stands on.
     pub from: f64,
@@ -268,7 +268,7 @@ pub struct Bar {
 }
 
 /// Which way bars grow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Direction {
     /// Along y, standing on the x axis.
     Up,
@@ -278,7 +278,7 @@ pub enum Direction {
 
 /// How a mark looks. Marks that are to be distinguished differ in colour *and* in dash or marker,
 /// so that they still differ for a colour-blind reader and on a grey print.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Style {
     /// Colour.
     pub colour: Colour,
@@ -346,7 +346,7 @@ impl Style {
 
 /// The colours of Okabe and Ito (2008), which colour-blind readers can tell apart, without their
 /// yellow (too pale on white), and a grey for what is only there to compare with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub enum Colour {
     Black,
@@ -360,7 +360,7 @@ pub enum Colour {
 }
 
 /// Dash pattern of a line; hatching of a bar.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub enum Dash {
     Solid,
@@ -372,7 +372,7 @@ pub enum Dash {
 }
 
 /// Shape of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub enum Marker {
     Circle,

@@ -1,12 +1,12 @@
 //! A report as plain data: title, headline, sections, tables and figures.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::chart::Figure;
 use super::table::Table;
 
 /// A report as plain data.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Report {
     /// Name of its page among others of one directory, `rod` for `rod.html`; nothing for
     /// `index.html`.
@@ -28,7 +28,7 @@ pub struct Report {
 }
 
 /// Another page of the same directory.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PageLink {
     /// Its file: `rod.html`.
     pub file: String,
@@ -39,7 +39,7 @@ pub struct PageLink {
 }
 
 /// One number or word of the overview.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Card {
     /// What it is: "Error before and after".
     pub label: String,
@@ -52,7 +52,7 @@ pub struct Card {
 }
 
 /// How good what a card says is; the words say it too, for whoever sees no colour.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Tone {
     /// Neither good nor bad.
@@ -78,7 +78,7 @@ impl Card {
 }
 
 /// A part of a report under its own heading.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Section {
     /// Heading.
     pub heading: String,
@@ -87,7 +87,7 @@ pub struct Section {
 }
 
 /// A piece of a section.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Block {
     /// Plain words.
     Paragraph(String),

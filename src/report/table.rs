@@ -3,7 +3,7 @@
 mod within;
 
 use maud::{Markup, html};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::scale::typeset;
 use crate::delimited::guarded;
@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 
 /// Columns and rows of finished cells. Numbers are written as in a program, "-1.5e-3"; what is for
 /// people to read gets its minus sign here.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Table {
     /// Short name for files, for example "compliance".
     pub name: String,
@@ -28,7 +28,7 @@ pub struct Table {
 }
 
 /// One column of a table.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Column {
     /// Heading.
     pub header: String,
@@ -41,7 +41,7 @@ pub struct Column {
 }
 
 /// Units by row: one column names them, others have numbers in them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RowUnit {
     /// Nothing.
@@ -54,7 +54,7 @@ pub enum RowUnit {
 }
 
 /// Where the cells of a column stand.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Align {
     /// Texts.
     Left,

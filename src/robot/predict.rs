@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Matrix3xX, Vector3};
 
-use super::{Effect, Kinematics, Loads, Parameter, Robot, RobotLaw, Setup};
+use super::{Effect, Kinematics, Loads, Parameter, Robot, RobotLaw, Setup, joint_value};
 use crate::delimited::Table;
 use crate::error::{Error, Place, Result};
 use crate::rod::constants::covariance;
@@ -215,7 +215,7 @@ impl Robot {
             return Err(table.header_error(name, found, expected, Some(hint)));
         }
         let pose = |(at, row): (usize, crate::delimited::Row<'_>)| {
-            let joints = columns.iter().map(|(name, unit)| Ok(row.required_number(name)? * unit));
+            let joints = columns.iter().map(|(name, unit)| Ok(joint_value(row, name)? * unit));
             let name = row.text("pose").map_or_else(|| (at + 1).to_string(), str::to_owned);
             Ok(PredictionQuery { pose: name, joints: joints.collect::<Result<_>>()? })
         };

@@ -65,8 +65,8 @@ pub fn write_together(directory: &Path, files: &[(String, Vec<u8>)], existing: E
 /// # Errors
 /// [`Error::InTheWay`], [`Error::File`].
 pub fn check_free(directory: &Path, names: &[&str], existing: Existing) -> Result<()> {
-    in_place::finish(directory)?;
-    let known = Known::By(Marker::read(directory)?);
+    let markers = [Some(Marker::read(directory)?), in_place::pending(directory)?];
+    let known = Known::By(markers.into_iter().flatten().collect());
     let there = names.iter().map(|name| Ok((*name, Standing::at(&directory.join(name))?)));
     refuse(&there.collect::<Result<Vec<_>>>()?, existing, |name, there| known.whose(name, there))
 }
@@ -236,8 +236,9 @@ mod tests {
                     } else if kind(count) == Fault::Once(count) {
                         assert!(there == old && temporary == 0, "{what}: {there:?}, {temporary} left");
                     } else if case == 3 {
-                        // file by file: the next run that looks there completes it
-                        check_free(&root, &["a"], Existing::Keep).unwrap();
+                        // file by file: the next run that writes there completes it
+                        check_free(&root, &["b", "c"], Existing::Keep).unwrap();
+                        in_place::finish(&root).unwrap();
                         there = listing(directory.path()).0;
                     } else if case == 0 {
                         // empty directories may have been made
@@ -255,6 +256,53 @@ mod tests {
                 assert!(count > 8, "only {count} operations: are they still counted?");
             }
         }
+    }
+
+    /// A folder of the name of a set on its way, from whoever, replaces nothing that is not known.
+    #[test]
+    fn what_only_looks_like_a_set_on_its_way_replaces_nothing() {
+        let directory = tempfile::tempdir().unwrap();
+        let root = directory.path();
+        let begun = root.join(".rodcal-commit");
+        std::fs::write(root.join("notes"), "mine").unwrap();
+        std::fs::create_dir(&begun).unwrap();
+        let refused = |name: &str| {
+            let before = listing(directory.path()).0;
+            let checked = check_free(root, &[name], Existing::Replace).map_err(|e| e.to_string());
+            let written = write_together(root, &all(&[name], "new"), Existing::Replace);
+            let error = written.unwrap_err().to_string();
+            assert_eq!(checked, Err(error.clone()));
+            assert!(error.starts_with("cannot complete") && error.contains(".rodcal-commit"), "{error}");
+            assert_eq!(listing(directory.path()).0, before);
+        };
+        std::fs::write(begun.join("notes"), "evil").unwrap();
+        refused("a");
+        // with a marker that knows it
+        let marker = Marker::default().with(&all(&["notes"], "evil"));
+        std::fs::write(begun.join(MARKER), marker).unwrap();
+        refused("a");
+        // and with the hash of other notes
+        std::fs::write(begun.join(".rodcal-replaced"), format!("{}  notes\n", sha256(b"theirs"))).unwrap();
+        refused("a");
+        std::os::unix::fs::symlink("elsewhere", begun.join("link")).unwrap();
+        refused("a");
+        std::fs::remove_dir_all(&begun).unwrap();
+        std::os::unix::fs::symlink("elsewhere", &begun).unwrap();
+        refused("a");
+    }
+
+    #[test]
+    fn the_key_of_a_trial_is_never_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let root = directory.path();
+        let key = "{\"trial\":{\"made_by\":\"rodcal 0.1.0\"}}\n";
+        write_together(root, &all(&["result.json"], key), Existing::Keep).unwrap();
+        for existing in [Existing::Keep, Existing::Replace] {
+            let error = write_together(root, &all(&["result.json"], "{}"), existing).unwrap_err();
+            assert!(matches!(error, Error::InTheWay { whose: Whose::Kept, .. }), "{error}");
+            assert!(check_free(root, &["result.json"], existing).is_err());
+        }
+        assert_eq!(read_text(&root.join("result.json")).unwrap(), key);
     }
 
     #[test]

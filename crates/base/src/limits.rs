@@ -25,10 +25,14 @@ pub const TOML_BYTES: usize = 8_000_000;
 pub const URDF_BYTES: usize = 16_000_000;
 /// Attributes of one element of a URDF: each is compared with all others.
 pub const URDF_ATTRIBUTES: usize = 1_000;
+/// `xmlns` in a URDF: every element inherits all above it.
+pub const URDF_NAMESPACES: usize = 100;
 /// Elements, texts and comments of a URDF.
 pub const URDF_NODES: usize = 1_000_000;
 /// Joints of a robot that move.
 pub const ROBOT_JOINTS: usize = 64;
+/// Size of a joint's value in a table, degrees or mm: the sine of what is larger says nothing.
+pub const JOINT_VALUE: usize = 1_000_000_000;
 /// Effects of a robot file.
 pub const ROBOT_EFFECTS: usize = 1_000;
 /// Laws of a robot file.

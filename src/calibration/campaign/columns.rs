@@ -4,7 +4,7 @@ use super::Warning;
 use super::layout::{Role, Seen};
 use crate::delimited::{Row, Table, nearest_name, renamed};
 use crate::error::Result;
-use crate::robot::Robot;
+use crate::robot::{Robot, joint_value};
 
 pub(super) const POSITION: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
 /// Where tracker or base stood.
@@ -41,7 +41,8 @@ impl Columns {
 
     /// The joint values of a row, rad or m.
     pub(super) fn joint_values(&self, row: Row<'_>) -> impl Iterator<Item = Result<f64>> {
-        self.joints.iter().map(move |joint| Ok(required(row, &joint.name)? * joint.unit))
+        let value = move |name: &str| required(row, name).and_then(|_| joint_value(row, name));
+        self.joints.iter().map(move |joint| Ok(value(&joint.name)? * joint.unit))
     }
 
     /// Whether the cells of a column are numbers.

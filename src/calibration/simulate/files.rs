@@ -1,15 +1,16 @@
 //! A simulated campaign as the files that a user would have.
 
 use super::Simulation;
-use crate::calibration::campaign::{Recording, Targets};
+use crate::calibration::campaign::Targets;
 use crate::compliance::PAPER_CONTACT_FORCE;
+use crate::robot::Robot;
 use crate::statistics::Random;
 use crate::units::{DEG, MM, STANDARD_GRAVITY, UM};
 
 /// Names and contents of `campaign.toml`, `measurements.csv`, `validation.csv` and `readings.csv`.
 ///
-/// `robot` and `rod` are what the campaign shall name. Joint angles are written to a tenth of a
-/// microradian, displacements to a tenth of a micrometre.
+/// `robot` and `rod` are what the campaign shall name. Joint angles are written to a
+/// ten-millionth of a degree, displacements to a tenth of a micrometre.
 pub fn campaign_files(simulation: &Simulation, robot: &str, rod: &str) -> Vec<(String, String)> {
     vec![
         ("campaign.toml".into(), campaign(simulation, robot, rod)),
@@ -49,12 +50,12 @@ fn campaign(simulation: &Simulation, robot: &str, rod: &str) -> String {
     text
 }
 
-fn joint_header(recording: &Recording) -> String {
-    (1..=recording.joint_count).map(|j| format!(",q{j}_deg")).collect()
+fn joint_header(robot: &Robot) -> String {
+    (1..).zip(&robot.joints).map(|(number, joint)| format!(",{}", joint.column(number).0)).collect()
 }
 
-fn joint_cells(recording: &Recording, row: usize) -> String {
-    recording.joints(row).iter().map(|q| format!(",{:.7}", q / DEG)).collect()
+fn joint_cells(robot: &Robot, values: &[f64]) -> String {
+    values.iter().zip(&robot.joints).map(|(q, joint)| format!(",{:.7}", q / joint.column(1).1)).collect()
 }
 
 fn measurements(simulation: &Simulation) -> String {
@@ -63,12 +64,12 @@ fn measurements(simulation: &Simulation) -> String {
     let mut text = format!(
         "# SIMULATED, seed {}\npose,clamp{},x_mm,y_mm,z_mm\n",
         simulation.plan.seed,
-        joint_header(recording)
+        joint_header(simulation.truth.robot)
     );
     for (row, entry) in recording.rows.iter().enumerate() {
         let device = &recording.groups[entry.group].device;
         let seen = device.inverse().point(&points[row]) / MM;
-        let (q, clamp) = (joint_cells(recording, row), entry.group + 1);
+        let (q, clamp) = (joint_cells(simulation.truth.robot, recording.joints(row)), entry.group + 1);
         text += &format!("{},{clamp}{q},{:.4},{:.4},{:.4}\n", entry.pose, seen.x, seen.y, seen.z);
     }
     text
@@ -80,11 +81,18 @@ fn validation(simulation: &Simulation) -> String {
     let mut text = format!(
         "# SIMULATED, seed {}\npose{},x_mm,y_mm,z_mm\n",
         simulation.plan.seed,
-        joint_header(recording)
+        joint_header(simulation.truth.robot)
     );
     for (row, entry) in recording.rows.iter().enumerate() {
         let x = points[row] / MM;
-        text += &format!("{}{},{:.4},{:.4},{:.4}\n", entry.pose, joint_cells(recording, row), x.x, x.y, x.z);
+        text += &format!(
+            "{}{},{:.4},{:.4},{:.4}\n",
+            entry.pose,
+            joint_cells(simulation.truth.robot, recording.joints(row)),
+            x.x,
+            x.y,
+            x.z
+        );
     }
     text
 }

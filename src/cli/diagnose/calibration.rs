@@ -1,12 +1,12 @@
 //! `rodcal diagnose calibration CAMPAIGN`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rodcal::Result;
 use rodcal::answer::{self, neighbours};
 use rodcal::calibration::{self, Campaign};
 use rodcal::diagnosis::calibration::effects::registry;
+use rodcal::{Result, files};
 
 use super::listed::listed;
 use crate::cli::calibrate::ModeName;
@@ -53,7 +53,10 @@ impl Calibration {
     pub fn run(&self) -> Result<Outcome> {
         let campaign = Campaign::read(&self.campaign)?;
         let mode = self.mode.map_or_else(|| calibration::default_mode(&campaign), ModeName::mode);
-        let answer = answer::diagnose_calibration(&campaign, mode, &neighbours(&campaign), self.apply)?;
+        let directory = self.campaign.parent().unwrap_or(Path::new(""));
+        let content = |name: &str| files::read_bytes(&directory.join(name));
+        let apply = self.apply.then_some(&content as &dyn Fn(&str) -> Result<Vec<u8>>);
+        let answer = answer::diagnose_calibration(&campaign, mode, &neighbours(&campaign), apply)?;
         let default_directory = (!answer.files.is_empty()).then(|| PathBuf::from(output::APPLIED));
         Ok(Outcome { default_directory, ..answer.into() })
     }

@@ -27,6 +27,8 @@ impl<'t> Source<'t> {
             limits::URDF_ATTRIBUTES,
             "attributes in one element",
         )?;
+        let namespaces = self.text.matches("xmlns").count();
+        limits::check(self.file, namespaces, limits::URDF_NAMESPACES, "namespaces")?;
         let options = ParsingOptions { nodes_limit: limits::URDF_NODES as u32, ..ParsingOptions::default() };
         Document::parse_with_options(self.text, options).map_err(|error| {
             let message = error.to_string();

@@ -12,6 +12,8 @@ use super::disk;
 use super::marker::{MARKER, Marker};
 
 const PREFIX: &str = ".rodcal-";
+/// What stood where the files of a set on its way go; see `in_place.rs`.
+pub(super) const REPLACED: &str = ".rodcal-replaced";
 
 /// A name in `directory` that no other run uses.
 fn fresh(directory: &Path) -> PathBuf {
@@ -142,7 +144,8 @@ fn remove_known(folder: &Path) {
     let removed = names(folder).and_then(|names| {
         for name in names {
             let path = folder.join(&name);
-            let is_known = name.to_str().is_some_and(|name| name == MARKER || marker.names(name));
+            let is_known =
+                name.to_str().is_some_and(|name| name == MARKER || name == REPLACED || marker.names(name));
             match is_known || has_other_name(&path) {
                 true => disk::remove_file(&path)?,
                 false => return Ok(()),

@@ -52,7 +52,7 @@ impl Staged {
         let there = there.collect::<Result<Vec<_>>>()?;
         let hashes: BTreeMap<&str, String> =
             files.iter().map(|(name, contents)| (*name, sha256(contents))).collect();
-        let known = Known::By(marker);
+        let known = Known::By(vec![marker]);
         // the same bytes are no loss
         refuse(&there, existing, |name, there| match hashes.get(name) == Some(&there.sha256) {
             true => None,

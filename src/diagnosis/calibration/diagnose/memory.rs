@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::robot::Motion;
 
 /// Bytes beyond which a diagnosis is refused.
-pub const MEMORY_LIMIT: f64 = 4e9;
+pub const MEMORY_LIMIT: f64 = 2e9;
 /// Numbers for each pose: of a joint's gear and approach; of a pair of joints and of a link by a
 /// pair of them; of all else.
 const OF_JOINT: f64 = 1300.0;
@@ -84,8 +84,8 @@ mod tests {
             let campaign = Campaign::new(robot.clone(), recording.subset(&rows)).unwrap();
             check_memory(&campaign).map_err(|error| format!("{error}; {}", error.hint().unwrap_or_default()))
         };
-        assert!(refused(20_000).is_ok());
+        assert!(refused(10_000).is_ok());
         let message = refused(60_000).unwrap_err();
-        assert!(message.contains("60000 poses of 6 joints") && message.contains("one row in 3"), "{message}");
+        assert!(message.contains("60000 poses of 6 joints") && message.contains("one row in 5"), "{message}");
     }
 }

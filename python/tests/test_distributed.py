@@ -133,7 +133,7 @@ def test_what_workers_refuse_is_said_here(client: Client) -> None:
     future = client.submit(rodcal.Rod.from_toml, "[geometry]\nl1_mm = true\n")
     with pytest.raises(rodcal.InputError) as raised:
         future.result()
-    assert (raised.value.file, raised.value.expected) == ("<rod>", "a number")
+    assert (raised.value.file, raised.value.line, raised.value.expected) == ("<toml>", 2, "a number")
 
 
 def test_no_more_parts_are_on_their_way_than_the_cluster_takes(client: Client) -> None:

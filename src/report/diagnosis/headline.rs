@@ -52,7 +52,11 @@ fn answer(subject: &Subject) -> String {
         };
     }
     let said: Vec<String> = findings.iter().take(IN_FULL).map(|finding| sentence(subject, finding)).collect();
-    let mut words = said.join(" ");
+    // what may as well not be there is not said first
+    let mut words = match unconfirmed(subject) {
+        Some(words) => format!("{words} {}", said.join(" ")),
+        None => said.join(" "),
+    };
     let others = &findings[IN_FULL.min(findings.len())..];
     let named: Vec<String> = others.iter().take(NAMED).map(cause_at).collect();
     if !named.is_empty() {
@@ -165,6 +169,8 @@ fn worth(subject: &Subject) -> String {
             um(after),
             only_in_part(subject, it, (before, after))
         ),
+        // said before all else
+        Some(_) if mistakes.is_empty() => format!(" {}", capital(&scatter)),
         Some((before, after)) => format!(
             " Held-out {} do not confirm {it}: their error is {} µm before and {} µm after{averaged}.",
             subject.noun,
@@ -173,6 +179,29 @@ fn worth(subject: &Subject) -> String {
         ),
         None => fitted(" (nothing could be held out)"),
     }
+}
+
+/// Said where held-out data are predicted no better with what was found. A single event says
+/// nothing of them, and a mistake is corrected before anything is held out.
+fn unconfirmed(subject: &Subject) -> Option<String> {
+    let findings = &subject.diagnosis.findings;
+    let is_physics = |finding: &&Finding| finding.kind() == Kind::Physics;
+    let count = findings.iter().filter(is_physics).count();
+    if count == 0 || findings.iter().any(|finding| finding.kind() == Kind::Mistake) {
+        return None;
+    }
+    let (before, after) = subject.errors.held_out?;
+    if um(after) != um(before) && after < before {
+        return None;
+    }
+    let it = if findings.len() == 1 { "this" } else { "these" };
+    Some(format!(
+        "Possible, but held-out {} do not confirm {it} (their error is {} µm before and {} µm after{}):",
+        subject.noun,
+        um(before),
+        um(after),
+        subject.errors.averaged
+    ))
 }
 
 /// Said where held-out data, which `it` predicts better than nothing does, are predicted much worse

@@ -85,6 +85,8 @@ fn what_gives_way_under_the_arm_s_weight_is_known_at_unseen_poses() {
         assert_eq!((applied.entered.len(), applied.removed.len(), applied.left_out.len()), (1, 0, 0));
         let again = written(&applied, "");
         let after = calibrate(&again, Mode::None, &Options::default()).unwrap();
+        let (without, with) = applied.unseen.unwrap();
+        assert!(with < without && !applied.is_worse(), "{name}: {without} {with}");
         let noise = 3.0f64.sqrt() * NOISE;
         let (was, is) = (validated(&before), validated(&after));
         assert!(is < 1.25 * noise && is < was && was > 1.3 * noise, "{name}: {was} {is}");

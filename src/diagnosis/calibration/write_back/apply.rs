@@ -10,7 +10,7 @@ use super::super::diagnose::CalibrationDiagnosis;
 use super::correction_table;
 use super::destination::{write, write_law};
 use crate::calibration::campaign::{Campaign, FileNames, Recording};
-use crate::calibration::{Options, Summary, calibrate, write_back_with, write_beside};
+use crate::calibration::{Calibration, Options, Summary, calibrate, write_back_with, write_beside};
 use crate::error::Result;
 use crate::inference::law::{Law, Proposed};
 use crate::inference::{Finding, WrittenTo};
@@ -33,7 +33,20 @@ pub struct Applied {
     pub left_out: Vec<String>,
     /// Mean distance of the tip after the calibration with all that, m.
     pub mean: f64,
+    /// The same at the validation poses, without the findings and with them; `None` without such
+    /// poses.
+    pub unseen: Option<(f64, f64)>,
 }
+
+impl Applied {
+    /// True where poses that were not seen say that the robot is worse with what was found.
+    pub fn is_worse(&self) -> bool {
+        self.unseen.is_some_and(|(without, with)| with > WORSE * without)
+    }
+}
+
+/// By this factor an error has grown, and is not the same within what some poses show of it.
+const WORSE: f64 = 1.1;
 
 /// A finding as it is beside the law.
 fn beside(law: Option<&Law>, finding: &Finding) -> Finding {
@@ -106,7 +119,9 @@ pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) 
         std::iter::once(corrected).chain(above.iter().cloned()).chain(corrections).collect();
     files.extend(campaign_files(model.campaign, &extended, names, &above)?);
     let mean = Summary::of(&calibration.residuals()).mean;
-    Ok(Some(Applied { files, undone: Vec::new(), entered, removed, left_out, mean }))
+    let unseen = |calibration: &Calibration| Some(calibration.validation.as_ref()?.summary.mean);
+    let unseen = unseen(&model.calibration).zip(unseen(&calibration));
+    Ok(Some(Applied { files, undone: Vec::new(), entered, removed, left_out, mean, unseen }))
 }
 
 /// The campaign with the nominal robot and its effects. Rod and readings are as they were.

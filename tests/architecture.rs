@@ -321,7 +321,7 @@ fn a_trial_names_effects_in_its_registry_alone() {
 }
 
 /// Rooms in which a closure or a parameter may still be called `of`.
-const OF_EXEMPT: [&str; 3] = ["inference", "report", "diagnosis"];
+const OF_EXEMPT: [&str; 2] = ["report", "diagnosis"];
 
 /// `of(x)` says nothing of what comes out: only what stands behind its type, as `Rate::of`, may be
 /// called so.

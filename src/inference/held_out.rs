@@ -191,14 +191,14 @@ fn forms(search: &Search, hypothesis: &Hypothesis) -> Vec<Hypothesis> {
 
 /// What hypotheses leave on average, each by its probability.
 fn averaged(hypotheses: &[Hypothesis], left: impl Fn(&Hypothesis) -> DVector<f64>) -> DVector<f64> {
-    let most = hypotheses.iter().map(|of| of.log_probability).fold(f64::NEG_INFINITY, f64::max);
+    let most = hypotheses.iter().map(|own| own.log_probability).fold(f64::NEG_INFINITY, f64::max);
     // the likeliest counts whole, however unlikely it is
-    let share = |of: &Hypothesis| match of.log_probability == most {
+    let share = |own: &Hypothesis| match own.log_probability == most {
         true => 1.0,
-        false => (of.log_probability - most).exp(),
+        false => (own.log_probability - most).exp(),
     };
     let total: f64 = hypotheses.iter().map(share).sum();
-    let weighted = hypotheses.iter().map(|of| left(of) * (share(of) / total));
+    let weighted = hypotheses.iter().map(|own| left(own) * (share(own) / total));
     weighted.reduce(|sum, more| sum + more).unwrap_or_default()
 }
 

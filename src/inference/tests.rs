@@ -252,11 +252,11 @@ fn widened(form: &str, law: impl Fn(f64) -> f64) -> ((f64, f64, f64), (f64, f64,
         model.candidates[1].parameters[0].name = "other".into();
     }
     let of_forms = diagnose(&model, &evidence(3, |x| 6.0 * x));
-    (of(&alone), of(&of_forms))
+    (the_line(&alone), the_line(&of_forms))
 }
 
 /// The interval of the one finding, which is the line's.
-fn of(found: &Diagnosis) -> (f64, f64, f64) {
+fn the_line(found: &Diagnosis) -> (f64, f64, f64) {
     let [finding] = &found.findings[..] else { panic!("{:?}", found.findings) };
     assert_eq!(finding.parts[0].term.candidate, 0);
     {
@@ -287,7 +287,7 @@ fn an_interval_holds_what_else_may_be_there() {
         if with {
             model.add("other", "", column(|x| x + 0.3 * x * x), false);
         }
-        let (_, low, high) = of(&diagnose(&model, &evidence(3, |x| 6.0 * x)));
+        let (_, low, high) = the_line(&diagnose(&model, &evidence(3, |x| 6.0 * x)));
         0.5 * (high - low)
     };
     assert!(half(true) > 1.2 * half(false), "{} {}", half(true), half(false));

@@ -144,6 +144,19 @@ impl TorquePower {
     }
 }
 
+/// What an effect follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Follows {
+    /// The angle of its joint.
+    OwnAngle,
+    /// Where all joints are, and what pulls at them.
+    Configuration,
+    /// The moves between poses.
+    Moves,
+    /// Moments that turn no joint.
+    Moment,
+}
+
 impl Effect {
     /// The joint that it turns, or whose link it bends; `None` for all.
     pub fn joint(&self) -> Option<usize> {
@@ -164,56 +177,33 @@ impl Effect {
         }
     }
 
-    /// True of a function of its joint's own angle, which a table of corrections can hold.
-    pub fn is_of_own_angle(&self) -> bool {
+    /// What it follows, and so by whom it is computed.
+    fn follows(&self) -> Follows {
         match self {
-            Effect::Harmonic { .. } | Effect::Table { .. } | Effect::EncoderScale { .. } => true,
+            Effect::Harmonic { .. } | Effect::Table { .. } | Effect::EncoderScale { .. } => Follows::OwnAngle,
             Effect::Backlash { .. }
-            | Effect::PlayByApproach { .. }
-            | Effect::Friction { .. }
-            | Effect::Lag { .. }
             | Effect::Compliance { .. }
             | Effect::NonlinearStiffness { .. }
-            | Effect::LinkFlexibility { .. }
-            | Effect::GravityTilt { .. }
             | Effect::Weight { .. }
-            | Effect::Coupling { .. } => false,
+            | Effect::Coupling { .. } => Follows::Configuration,
+            Effect::PlayByApproach { .. } | Effect::Friction { .. } | Effect::Lag { .. } => Follows::Moves,
+            Effect::LinkFlexibility { .. } | Effect::GravityTilt { .. } => Follows::Moment,
         }
+    }
+
+    /// True of a function of its joint's own angle, which a table of corrections can hold.
+    pub fn is_of_own_angle(&self) -> bool {
+        self.follows() == Follows::OwnAngle
     }
 
     /// True where the move that led to a pose matters.
     pub fn follows_moves(&self) -> bool {
-        match self {
-            Effect::PlayByApproach { .. } | Effect::Friction { .. } | Effect::Lag { .. } => true,
-            Effect::Harmonic { .. }
-            | Effect::Table { .. }
-            | Effect::EncoderScale { .. }
-            | Effect::Backlash { .. }
-            | Effect::Compliance { .. }
-            | Effect::NonlinearStiffness { .. }
-            | Effect::LinkFlexibility { .. }
-            | Effect::GravityTilt { .. }
-            | Effect::Weight { .. }
-            | Effect::Coupling { .. } => false,
-        }
+        self.follows() == Follows::Moves
     }
 
     /// True of a link that bends and a base that tilts.
     pub fn bends_structure(&self) -> bool {
-        match self {
-            Effect::LinkFlexibility { .. } | Effect::GravityTilt { .. } => true,
-            Effect::Harmonic { .. }
-            | Effect::Table { .. }
-            | Effect::EncoderScale { .. }
-            | Effect::Backlash { .. }
-            | Effect::PlayByApproach { .. }
-            | Effect::Friction { .. }
-            | Effect::Lag { .. }
-            | Effect::Compliance { .. }
-            | Effect::NonlinearStiffness { .. }
-            | Effect::Weight { .. }
-            | Effect::Coupling { .. } => false,
-        }
+        self.follows() == Follows::Moment
     }
 
     /// Turn of its joint, rad, at the joint values `q` (rad or m) under the torques `torque` (N·m;

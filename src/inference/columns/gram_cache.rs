@@ -25,7 +25,7 @@ pub struct GramCache {
 /// Of effects, the oldest first in the order.
 #[derive(Default)]
 struct Effects {
-    of: BTreeMap<usize, Kept>,
+    products: BTreeMap<usize, Kept>,
     order: VecDeque<usize>,
     size: usize,
 }
@@ -56,20 +56,20 @@ impl GramCache {
     ) -> impl Fn(&[usize]) -> DMatrix<f64> + use<'a> {
         let kept = || self.effects.lock().unwrap_or_else(PoisonError::into_inner);
         let of_effect = |&effect: &usize| {
-            let known = kept().of.get(&effect).cloned();
+            let known = kept().products.get(&effect).cloned();
             known.unwrap_or_else(|| {
                 // not while others wait
                 let found: Kept = Arc::new(compute(effect));
                 let mut kept = kept();
                 kept.size += found.len();
                 kept.order.push_back(effect);
-                if let Some(same) = kept.of.insert(effect, Arc::clone(&found)) {
+                if let Some(same) = kept.products.insert(effect, Arc::clone(&found)) {
                     kept.size -= same.len();
                     kept.order.pop_back();
                 }
                 // what is asked for again is computed again
                 while kept.size > MOST && kept.order.len() > AT_LEAST {
-                    let oldest = kept.order.pop_front().and_then(|oldest| kept.of.remove(&oldest));
+                    let oldest = kept.order.pop_front().and_then(|oldest| kept.products.remove(&oldest));
                     kept.size -= oldest.map_or(0, |oldest| oldest.len());
                 }
                 found

@@ -59,7 +59,7 @@ struct Between {
     /// The oldest first.
     order: VecDeque<usize>,
     size: usize,
-    of: BTreeMap<usize, Arc<Vec<DMatrix<f64>>>>,
+    products: BTreeMap<usize, Arc<Vec<DMatrix<f64>>>>,
 }
 
 /// What a search over some of the parts needs.
@@ -132,7 +132,7 @@ impl<'a> PartProducts<'a> {
 
     /// Products of a candidate's columns with all, of each part.
     fn between(&self, candidate: usize) -> Arc<Vec<DMatrix<f64>>> {
-        let known = |kept: &Between| kept.of.get(&candidate).cloned();
+        let known = |kept: &Between| kept.products.get(&candidate).cloned();
         if let Some(known) = known(&self.between.lock().unwrap_or_else(PoisonError::into_inner)) {
             return known;
         }
@@ -142,13 +142,13 @@ impl<'a> PartProducts<'a> {
         let size = |found: &[DMatrix<f64>]| found.iter().map(DMatrix::len).sum::<usize>();
         kept.size += size(&found);
         kept.order.push_back(candidate);
-        if let Some(same) = kept.of.insert(candidate, Arc::clone(&found)) {
+        if let Some(same) = kept.products.insert(candidate, Arc::clone(&found)) {
             kept.size -= size(&same);
             kept.order.pop_back();
         }
         // what is asked for again is computed again
         while kept.size > KEPT && kept.order.len() > 1 {
-            let oldest = kept.order.pop_front().and_then(|oldest| kept.of.remove(&oldest));
+            let oldest = kept.order.pop_front().and_then(|oldest| kept.products.remove(&oldest));
             kept.size -= oldest.map_or(0, |oldest| size(&oldest));
         }
         found

@@ -72,8 +72,8 @@ pub fn confirmed(
 
 /// True of what happened once, of what predicts held-out data, and of what more than half of the
 /// searches without a fold find again.
-fn is_reproduced(kind: Kind, gain: f64, (found, of): (usize, usize)) -> bool {
-    kind != Kind::Physics || gain > 0.0 || 2 * found > of
+fn is_reproduced(kind: Kind, gain: f64, (found, searches): (usize, usize)) -> bool {
+    kind != Kind::Physics || gain > 0.0 || 2 * found > searches
 }
 
 /// A hypothesis without effects of which, with all else that may be there, nothing is as good an

@@ -25,7 +25,7 @@ pub(super) struct Folds {
     /// With the law that is found without each fold as well.
     pub with: f64,
     /// With each of some laws, fitted without each fold.
-    pub of: Vec<f64>,
+    pub own: Vec<f64>,
 }
 
 impl Folds {
@@ -75,10 +75,10 @@ pub(super) fn hold_out(
         let own = own.collect();
         (none, with, own)
     });
-    let rms = |of: &dyn Fn(&Predicted) -> &DVector<f64>| {
+    let rms = |part: &dyn Fn(&Predicted) -> &DVector<f64>| {
         let (mut square, mut count) = (0.0, 0.0);
         for (k, predicted) in by_fold.iter().enumerate() {
-            let predicted = of(predicted);
+            let predicted = part(predicted);
             for row in (0..n).filter(|&row| evidence.fold[row] == folds[k]) {
                 square += evidence.weight[row] * (evidence.residual[row] - predicted[row]).powi(2);
                 count += evidence.weight[row];
@@ -89,7 +89,7 @@ pub(super) fn hold_out(
     Some(Folds {
         without: rms(&|predicted| &predicted.0),
         with: rms(&|predicted| &predicted.1),
-        of: (0..choices.len()).map(|k| rms(&|predicted| &predicted.2[k])).collect(),
+        own: (0..choices.len()).map(|k| rms(&|predicted| &predicted.2[k])).collect(),
     })
 }
 

@@ -169,7 +169,7 @@ impl Form {
 
     /// Its functions at ξ, those that there are.
     pub fn functions(self, xi: f64, s: f64) -> [f64; 3] {
-        let odd = |of: &dyn Fn(f64) -> f64| if xi < 0.0 { -of(-xi) } else { of(xi) };
+        let odd = |half: &dyn Fn(f64) -> f64| if xi < 0.0 { -half(-xi) } else { half(xi) };
         let one = |value: f64| [value, 0.0, 0.0];
         match self {
             Form::Power => one(odd(&|xi| if xi == 0.0 { 0.0 } else { xi.powf(s) })),

@@ -70,10 +70,10 @@ pub(super) fn left_beside(
     let site = &beside[best.choice.site];
     let something = Left::Something(site.location.clone(), site.variable.clone());
     let curve = found.curve.map_or(f64::NEG_INFINITY, |(_, odds)| odds);
-    if best.log_odds < curve || !folds.is_lower(folds.of[0]) {
+    if best.log_odds < curve || !folds.is_lower(folds.own[0]) {
         return something;
     }
-    let second = Alone { class: &class, held_out: &folds.of, curve };
+    let second = Alone { class: &class, held_out: &folds.own, curve };
     let is_enough = |both: &Both| law.log_odds > first.curve || !both.is_more_left(known, &sites_with);
     match together(known, [first, &second], &beside, &sites_with, is_enough) {
         Some([mut one, other]) => {

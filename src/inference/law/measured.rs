@@ -142,9 +142,9 @@ fn names(site: &Site, form: Form) -> Vec<(String, String, String, f64)> {
     for (direction, _) in &site.directions {
         for &(symbol, name, power) in &of_form {
             let (unit, si) = per(power);
-            let of = if direction.is_empty() { String::new() } else { format!("_{direction}") };
+            let along = if direction.is_empty() { String::new() } else { format!("_{direction}") };
             let said = if direction.is_empty() { String::new() } else { format!(", {direction}") };
-            names.push((format!("{symbol}{of}"), format!("{name}{said}"), unit, si));
+            names.push((format!("{symbol}{along}"), format!("{name}{said}"), unit, si));
         }
     }
     names

@@ -99,7 +99,7 @@ impl Peak {
     ) -> Peak {
         let volume: f64 = ranges.iter().map(|(low, high)| high - low).product();
         let alone = Peak { at, log_evidence: most, points: vec![(at, 1.0)] };
-        let Some(root) = spread.cholesky().map(|of| of.l()) else { return alone };
+        let Some(root) = spread.cholesky().map(|cholesky| cholesky.l()) else { return alone };
         // −ln q of z, but for its constant
         let drawn = (1..=DRAWN).map(normal).map(|z| (at + root * z, 0.5 * z.norm_squared()));
         let is_within = |point: &Vector3<f64>| bounded(*point, &ranges) == *point;

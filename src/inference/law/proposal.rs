@@ -89,12 +89,12 @@ pub fn propose(
     let folds = hold_out(&data, &all, (&choices, &tried));
     let Some(folds) = folds else { return refused(Refusal::NoFolds, None) };
     let errors = Some((folds.without, folds.with));
-    if behind <= 0.0 && !(folds.is_lower(folds.with) && folds.is_lower(folds.of[0])) {
+    if behind <= 0.0 && !(folds.is_lower(folds.with) && folds.is_lower(folds.own[0])) {
         return refused(Refusal::HeldOut, errors);
     }
     let known = Known { data, sites: &all, remainder: &remainder, background: evidence.background.ncols() };
-    let is_lower = folds.is_lower(folds.with) && folds.is_lower(folds.of[0]);
-    let alone = Alone { class: &class, held_out: &folds.of, curve: curve_odds };
+    let is_lower = folds.is_lower(folds.with) && folds.is_lower(folds.own[0]);
+    let alone = Alone { class: &class, held_out: &folds.own, curve: curve_odds };
     let left = match behind <= 0.0 || is_lower {
         true => left_beside(&known, &alone, |own| sites(&(&change + own))),
         false => Left::Nothing,
@@ -109,7 +109,7 @@ pub fn propose(
         Left::Something(location, variable) => Some((location, variable)),
         Left::Laws(_, second) => Some((second.law.site.location, second.law.site.variable)),
     };
-    let own_errors: Vec<Option<f64>> = folds.of.iter().copied().map(Some).collect();
+    let own_errors: Vec<Option<f64>> = folds.own.iter().copied().map(Some).collect();
     let Some(law) = described(&known, &class, &own_errors, curve_odds) else {
         return refused(Refusal::Chance, None);
     };

@@ -123,7 +123,7 @@ impl Evidence {
 
     /// The data of these rows.
     pub fn part(&self, rows: &[usize]) -> Evidence {
-        let pick = |of: &[usize]| rows.iter().map(|&row| of[row]).collect();
+        let pick = |numbers: &[usize]| rows.iter().map(|&row| numbers[row]).collect();
         Evidence {
             recorded: rows.iter().filter(|&&row| row < self.recorded).count(),
             residual: self.residual.select_rows(rows),

@@ -40,13 +40,13 @@ const OF_GROUPS: f64 = 0.5;
 /// `None` where none is.
 pub fn hidden(model: &Linearised<'_>, evidence: &Evidence, left: &DVector<f64>) -> Option<Term> {
     let both = [hidden_step(model, evidence, left), hidden_course(model, evidence, left)];
-    let mut found: Vec<Hidden> = both.into_iter().flatten().filter(|of| of.log_odds > HIDDEN).collect();
+    let mut found: Vec<Hidden> = both.into_iter().flatten().filter(|hidden| hidden.log_odds > HIDDEN).collect();
     found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
     // ρ by moments is about the likeliest: what is gained may be gained by a better one alone
-    let is_so = |of: &Hidden| {
-        highest_density(evidence, &of.rest) - highest_density(evidence, left) > HIDDEN + of.price
+    let is_so = |hidden: &Hidden| {
+        highest_density(evidence, &hidden.rest) - highest_density(evidence, left) > HIDDEN + hidden.price
     };
-    found.into_iter().find(is_so).map(|of| of.term)
+    found.into_iter().find(is_so).map(|hidden| hidden.term)
 }
 
 /// What may be hidden.
@@ -247,7 +247,7 @@ mod tests {
     /// A swing over the groups, and a law within them.
     fn model() -> Columns {
         let mut model = Columns::new(GROUPS * POINTS);
-        let column = |of: fn(usize) -> f64| DMatrix::from_fn(GROUPS * POINTS, 1, move |row, _| of(row));
+        let column = |value: fn(usize) -> f64| DMatrix::from_fn(GROUPS * POINTS, 1, move |row, _| value(row));
         model.add("swing", "", column(swing), false);
         model.add("law", "", column(|row| (row % POINTS) as f64 - 2.5), false);
         model

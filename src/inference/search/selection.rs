@@ -235,7 +235,7 @@ impl Search<'_> {
     fn leaves_as_little(&self, hypothesis: &Hypothesis, longer: &Hypothesis) -> bool {
         let all = self.degrees_of_freedom().max(1) as f64;
         let per_freedom =
-            |of: &Hypothesis| self.left_rms(of) / (1.0 - of.determined / all).max(f64::EPSILON).sqrt();
+            |own: &Hypothesis| self.left_rms(own) / (1.0 - own.determined / all).max(f64::EPSILON).sqrt();
         let more = (longer.determined - hypothesis.determined).max(1.0);
         let by_chance = 1.0 + CHANCE * (2.0 * more).sqrt() / (2.0 * all);
         per_freedom(hypothesis) < AS_WELL.1.max(by_chance) * per_freedom(longer)

@@ -201,7 +201,7 @@ impl Mended {
     /// nothing could be written.
     ///
     /// # Errors
-    /// As [`super::write_back::apply()`].
+    /// As [`apply`](fn@apply).
     pub fn apply(&self, found: &CalibrationDiagnosis, names: &FileNames) -> Result<Option<Applied>> {
         let undone: Vec<String> =
             self.found.iter().map(|finding| finding.description.observed.clone()).collect();

@@ -40,7 +40,8 @@ const OF_GROUPS: f64 = 0.5;
 /// `None` where none is.
 pub fn hidden(model: &Linearised<'_>, evidence: &Evidence, left: &DVector<f64>) -> Option<Term> {
     let both = [hidden_step(model, evidence, left), hidden_course(model, evidence, left)];
-    let mut found: Vec<Hidden> = both.into_iter().flatten().filter(|hidden| hidden.log_odds > HIDDEN).collect();
+    let mut found: Vec<Hidden> =
+        both.into_iter().flatten().filter(|hidden| hidden.log_odds > HIDDEN).collect();
     found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
     // ρ by moments is about the likeliest: what is gained may be gained by a better one alone
     let is_so = |hidden: &Hidden| {

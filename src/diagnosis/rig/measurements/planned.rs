@@ -64,8 +64,8 @@ pub fn effect_names() -> Vec<&'static str> {
 /// of them are looked at, and it is the least laborious one ([`RigPlan::is_least`]).
 ///
 /// # Errors
-/// [`Error::NotApplicable`] for an effect that no such measurement shows; what the beam model
-/// refuses.
+/// [`crate::Error::NotApplicable`] for an effect that no such measurement shows; what the beam
+/// model refuses.
 pub fn plan(rod: &Rod, between: &[&'static Effect], odds: f64, bench: &Bench) -> Result<RigPlan> {
     let menu = Menu::new(rod, between, bench)?;
     let wanted = odds.ln();

@@ -1,6 +1,5 @@
 //! The diagnosis: is there a mismatch, what is it, what could it be as well, and what remains.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use nalgebra::DVector;
@@ -12,7 +11,8 @@ use crate::inference::held_out::sessions::leave_one_session_out;
 use crate::inference::held_out::{Theme, hold_out};
 use crate::inference::locate::{Structure, along, locate};
 use crate::inference::model::evidence::rms;
-use crate::inference::noise::scatter::{NoiseTest, Suspect, Tails};
+use crate::inference::noise::scatter::{NoiseTest, Tails};
+use crate::inference::noise::suspects::are_many;
 use crate::inference::search::Search;
 use crate::inference::search::findings::findings;
 use crate::inference::search::parts::part;
@@ -100,8 +100,7 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let ratio = search.shared_ratio();
     let own = if ratio > ZEROS_APART * ZEROS_APART { noise / (1.0 + ratio).sqrt() } else { noise };
     let is_too_much = evidence.most_scatter.is_some_and(|most| own > times * most);
-    // many that are far off are no single ones
-    let are_many = suspects.len() > suspects_at_most(evidence.recorded) || are_together(evidence, &suspects);
+    let are_many = are_many(evidence, &suspects);
     let discrepancy = match &left_over {
         Some(DiscrepancyModel::Curve(longer)) => {
             Some(described(model, &search, evidence, longer, &predicted))
@@ -170,26 +169,6 @@ fn described(
         rms: rms(&shape),
         shape,
     }
-}
-
-/// True where neighbours of a run are far off to one side: so many that they are no single ones, or
-/// the run as a whole.
-fn are_together(evidence: &Evidence, suspects: &[Suspect]) -> bool {
-    const TOGETHER: usize = 3;
-    let side: BTreeMap<usize, bool> = suspects.iter().map(|s| (s.datum, s.sigma > 0.0)).collect();
-    let mut runs: BTreeMap<usize, Vec<Option<bool>>> = BTreeMap::new();
-    for (datum, &run) in evidence.shared.iter().enumerate().take(evidence.recorded) {
-        runs.entry(run).or_default().push(side.get(&datum).copied());
-    }
-    runs.values().any(|run| {
-        let mut of_one_side = run.chunk_by(|a, b| a == b).filter(|part| part[0].is_some());
-        of_one_side.any(|part| part.len() >= TOGETHER || (part.len() > 1 && part.len() == run.len()))
-    })
-}
-
-/// Of so many data that many may be far off by themselves: a tenth, three at least.
-fn suspects_at_most(count: usize) -> usize {
-    (count / 10).max(3)
 }
 
 /// What each covariate shows of the findings that are seen along it, beside all others.

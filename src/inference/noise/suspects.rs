@@ -1,0 +1,92 @@
+//! Data that are far off: single ones are remarks, many of them are something that nobody named.
+
+use std::collections::BTreeMap;
+
+use super::scatter::Suspect;
+use crate::inference::Evidence;
+
+/// True where so many data are far off that they are no single ones: of all, of one kind, or one
+/// after the other.
+pub fn are_many(evidence: &Evidence, suspects: &[Suspect]) -> bool {
+    suspects.len() > at_most(evidence.recorded)
+        || are_of_one_kind(evidence, suspects)
+        || are_together(evidence, suspects)
+}
+
+/// Of so many data that many may be far off by themselves: a tenth, three at least.
+fn at_most(count: usize) -> usize {
+    (count / 10).max(3)
+}
+
+/// True where more than a quarter of the data of one kind are far off, and more than five: a
+/// display that errs is read along some lines only.
+fn are_of_one_kind(evidence: &Evidence, suspects: &[Suspect]) -> bool {
+    const SHARE: usize = 4;
+    const FEW: usize = 5;
+    // all, and those that are far off
+    let mut kinds: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
+    for &kind in evidence.kind.iter().take(evidence.recorded) {
+        kinds.entry(kind).or_default().0 += 1;
+    }
+    for suspect in suspects {
+        kinds.entry(evidence.kind[suspect.datum]).or_default().1 += 1;
+    }
+    kinds.values().any(|&(all, far)| far > FEW.max(all / SHARE))
+}
+
+/// True where neighbours of a run are far off to one side: so many that they are no single ones, or
+/// the run as a whole.
+fn are_together(evidence: &Evidence, suspects: &[Suspect]) -> bool {
+    const TOGETHER: usize = 3;
+    let side: BTreeMap<usize, bool> = suspects.iter().map(|s| (s.datum, s.sigma > 0.0)).collect();
+    let mut runs: BTreeMap<usize, Vec<Option<bool>>> = BTreeMap::new();
+    for (datum, &run) in evidence.shared.iter().enumerate().take(evidence.recorded) {
+        runs.entry(run).or_default().push(side.get(&datum).copied());
+    }
+    runs.values().any(|run| {
+        let mut of_one_side = run.chunk_by(|a, b| a == b).filter(|part| part[0].is_some());
+        of_one_side.any(|part| part.len() >= TOGETHER || (part.len() > 1 && part.len() == run.len()))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DVector;
+
+    use super::*;
+
+    /// 120 data of four kinds in 30 runs, one of each kind in a run; these are far off, by turns.
+    fn are_many_of(suspects: impl Iterator<Item = usize>) -> bool {
+        let mut evidence = Evidence::new(DVector::zeros(120));
+        evidence.kind = (0..120).map(|datum| datum % 4).collect();
+        evidence.shared = (0..120).map(|datum| datum / 4).collect();
+        let sign = |k: usize| if k % 2 == 0 { 6.0 } else { -6.0 };
+        let suspects: Vec<Suspect> =
+            suspects.enumerate().map(|(k, datum)| Suspect { datum, sigma: sign(k) }).collect();
+        are_many(&evidence, &suspects)
+    }
+
+    #[test]
+    fn a_third_of_one_kind_are_no_single_ones() {
+        // ten over all kinds are a few; so are seven of one
+        assert!(!are_many_of((0..10).map(|k| 11 * k)));
+        assert!(!are_many_of((0..7).map(|k| 4 * k)));
+        // ten of one kind are a third of it
+        assert!(are_many_of((0..10).map(|k| 4 * k)));
+        // and thirteen of all are too many
+        assert!(are_many_of((0..13).map(|k| 9 * k)));
+    }
+
+    #[test]
+    fn neighbours_that_are_off_to_one_side_are_no_single_ones() {
+        let mut evidence = Evidence::new(DVector::zeros(40));
+        evidence.shared = vec![0; 40];
+        let far = |data: &[(usize, f64)]| {
+            let suspects: Vec<Suspect> =
+                data.iter().map(|&(datum, sigma)| Suspect { datum, sigma }).collect();
+            are_many(&evidence, &suspects)
+        };
+        assert!(far(&[(7, 5.0), (8, 6.0), (9, 5.0)]));
+        assert!(!far(&[(7, 5.0), (8, -6.0), (9, 5.0)]) && !far(&[(7, 5.0), (9, 6.0), (11, 5.0)]));
+    }
+}

@@ -45,13 +45,31 @@ impl Runs {
         }
         let differences =
             others.iter().map(|other| Difference::between(first, other)).collect::<Result<_>>()?;
-        Ok(Runs { runs, differences })
+        let labels = labels(&runs.iter().map(|run| run.folder.as_str()).collect::<Vec<_>>());
+        let named = |(run, label): (Run, String)| Run { label, ..run };
+        Ok(Runs { runs: runs.into_iter().zip(labels).map(named).collect(), differences })
     }
 
     /// Each run but the first, with its difference from that.
     fn compared(&self) -> impl Iterator<Item = (&Run, &Difference)> {
         self.runs.iter().skip(1).zip(&self.differences)
     }
+}
+
+/// The shortest ends of paths, by whole names, that are all different; else the paths.
+fn labels(folders: &[&str]) -> Vec<String> {
+    let end = |folder: &str, count: usize| -> String {
+        let names: Vec<&str> = folder.split('/').filter(|name| !name.is_empty()).collect();
+        names[names.len().saturating_sub(count)..].join("/")
+    };
+    let longest = folders.iter().map(|folder| folder.split('/').count()).max().unwrap_or(0);
+    let are_apart = |labels: &Vec<String>| {
+        let apart: std::collections::BTreeSet<&String> = labels.iter().collect();
+        apart.len() == labels.len() && labels.iter().all(|label| !label.is_empty())
+    };
+    let ends = (1..=longest).map(|count| folders.iter().map(|folder| end(folder, count)).collect());
+    let whole = || folders.iter().map(|folder| (*folder).to_owned()).collect();
+    ends.into_iter().find(are_apart).unwrap_or_else(whole)
 }
 
 fn refused(found: String, expected: String) -> Error {
@@ -153,7 +171,7 @@ fn headline(runs: &Runs, other: &Run, difference: &Difference) -> String {
         format!("{} {a} → {b} {}", change.name, change.unit).trim_end().to_owned()
     }));
     facts.extend(findings_said(difference));
-    format!("{} against {}: {}.", other.folder, runs.runs[0].folder, facts.join("; "))
+    format!("{} against {}: {}.", other.label, runs.runs[0].label, facts.join("; "))
 }
 
 fn parameters_said(difference: &Difference) -> String {
@@ -199,7 +217,7 @@ fn main_error(difference: &Difference) -> Option<&Change> {
 }
 
 fn cards(runs: &Runs, other: &Run, difference: &Difference) -> Vec<Card> {
-    let against = format!("{} against {}", other.folder, runs.runs[0].folder);
+    let against = format!("{} against {}", other.label, runs.runs[0].label);
     let count = |state: State| difference.inputs.iter().filter(|input| input.state == state).count();
     let (changed, alone, all) = (count(State::Changed), count(State::Alone), difference.inputs.len());
     let inputs =
@@ -243,14 +261,14 @@ fn warnings(runs: &Runs) -> Vec<String> {
             warnings.push(format!(
                 "{} and {} were made of the same recording ({}). Their random errors are partly common: \
                  difference over standard error is usually too small, and no significance is stated",
-                first.folder,
-                other.folder,
+                first.label,
+                other.label,
                 difference.shared_recordings.join(", ")
             ));
         }
         if other.program != first.program {
             let (a, b) = (&first.program, &other.program);
-            warnings.push(format!("{} was written by {a}, {} by {b}", first.folder, other.folder));
+            warnings.push(format!("{} was written by {a}, {} by {b}", first.label, other.label));
         }
     }
     warnings
@@ -264,7 +282,7 @@ fn commands(runs: &Runs) -> Section {
     let mut table = Table::new("runs", "What was run; every other run is compared with the first.", columns);
     for run in &runs.runs {
         table.row([
-            run.folder.as_str(),
+            run.label.as_str(),
             &run.command,
             &run.program,
             run.verdict.as_deref().unwrap_or_default(),
@@ -274,8 +292,8 @@ fn commands(runs: &Runs) -> Section {
 }
 
 fn of_pair(first: &Run, other: &Run, difference: &Difference, is_alone: bool) -> Vec<Section> {
-    let names = [&first.folder, &other.folder];
-    let pair = format!("{} against {}", other.folder, first.folder);
+    let names = [&first.label, &other.label];
+    let pair = format!("{} against {}", other.label, first.label);
     let mut inputs = Table::new(
         "inputs",
         format!("Input files by the SHA-256 of their content, {pair}."),

@@ -17,6 +17,8 @@ const HALF_95: f64 = 1.959_963_984_540_054;
 pub struct Run {
     /// The folder, as the user named it.
     pub folder: String,
+    /// As much of the end of it as distinguishes it from the others.
+    pub label: String,
     /// "calibrate", "rig fit".
     pub subcommand: String,
     /// The whole command.
@@ -74,6 +76,7 @@ impl Run {
         };
         let mut run = Run {
             folder: folder.into(),
+            label: folder.into(),
             subcommand: subcommand(command),
             command: command.into(),
             program: program.into(),

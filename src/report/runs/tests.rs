@@ -19,3 +19,10 @@ fn the_most_changed_parameters_are_shown_and_what_has_no_error_is_not() {
     assert!(figure.svg().contains("−10") && figure.caption.contains("16 largest of 19"));
     assert!(difference_picture(&all[2..3]).is_none());
 }
+
+#[test]
+fn runs_are_called_by_what_distinguishes_their_folders() {
+    assert_eq!(labels(&["/tmp/x/fit", "/tmp/x/huber/"]), ["fit", "huber"]);
+    assert_eq!(labels(&["a/rig", "b/rig", "/c/b/cal"]), ["a/rig", "b/rig", "b/cal"]);
+    assert_eq!(labels(&["run", "./run"]), ["run", "./run"]);
+}

@@ -60,7 +60,7 @@ mod tests {
         let mut evidence = Evidence::new(DVector::zeros(120));
         evidence.kind = (0..120).map(|datum| datum % 4).collect();
         evidence.shared = (0..120).map(|datum| datum / 4).collect();
-        let sign = |k: usize| if k % 2 == 0 { 6.0 } else { -6.0 };
+        let sign = |k: usize| if k.is_multiple_of(2) { 6.0 } else { -6.0 };
         let suspects: Vec<Suspect> =
             suspects.enumerate().map(|(k, datum)| Suspect { datum, sigma: sign(k) }).collect();
         are_many(&evidence, &suspects)

@@ -258,7 +258,7 @@ fn every_bad_column_or_cell_is_named_with_its_place() {
         (
             "q3_mm",
             "q3_m",
-            "measurements.csv:1: there is no column q3_mm, expected q1_deg, q2_deg, q3_mm, for the robot has 3 joints -> q3_m would be in metres: convert it to millimetres, into q3_mm",
+            "measurements.csv:1: there is no column q3_mm, expected q1_deg, q2_deg, q3_mm, for the robot has 3 joints -> q3_m would be in m: multiply by 1000, into q3_mm",
         ),
         (
             "q1_deg,q2_deg,q3_mm",
@@ -278,7 +278,7 @@ fn every_bad_column_or_cell_is_named_with_its_place() {
         (
             "x_mm",
             "x_m",
-            "measurements.csv:1: there is no column x_mm, expected the ball's position in the device frame of the clamp, in mm -> x_m would be in metres: convert it to millimetres, into x_mm",
+            "measurements.csv:1: there is no column x_mm, expected the ball's position in the device frame of the clamp, in mm -> x_m would be in m: multiply by 1000, into x_mm",
         ),
         (
             "x_mm,y_mm,z_mm",

@@ -5,7 +5,7 @@ use super::extrapolation::{Extrapolation, ranges};
 use super::identifiability::{MOST_SCATTER, UnidentifiedDirection, plausible_range};
 use super::result::Calibration;
 use super::warning::Warning;
-use crate::robot::{Parameter, ParameterGroup};
+use crate::robot::{Effect, Parameter, ParameterGroup};
 
 /// All that apply.
 pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Calibration) -> Vec<Warning> {
@@ -21,7 +21,8 @@ pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Cali
         warnings.push(Warning::NotPlausible { rms, reach: calibration.reach });
     }
     if !campaign.robot.has_masses() {
-        warnings.push(Warning::NoMasses);
+        let has_effects = campaign.robot.effects.iter().any(Effect::follows_load);
+        warnings.push(Warning::NoMasses { has_effects });
     }
     warnings.extend(not_identified(calibration));
     if !calibration.outliers.is_empty() {

@@ -33,7 +33,10 @@ pub enum Warning {
         beyond: Vec<String>,
     },
     /// The robot's file has no masses, so that the torques on its joints are unknown.
-    NoMasses,
+    NoMasses {
+        /// Whether effects of the file follow these torques.
+        has_effects: bool,
+    },
     /// A combination of parameters that the data do not identify.
     NotIdentified {
         /// The parameters that take part, the largest share first, with their coefficients.
@@ -109,8 +112,11 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Warning::NotConverged { reason, passes } => {
-                write!(f, "the calibration did not converge in {passes} passes ({reason}): do not use \
-                    its numbers")
+                write!(
+                    f,
+                    "the calibration did not converge in {passes} passes ({reason}): do not use \
+                    its numbers"
+                )
             }
             Warning::NotPlausible { rms, reach } => write!(
                 f,
@@ -132,9 +138,17 @@ impl fmt::Display for Warning {
                     beyond => write!(f, "; beyond what was recorded: {}", beyond.join("; ")),
                 }
             }
-            Warning::NoMasses => f.write_str(
-                "the robot's file has no masses, so the torques on its joints are unknown: joint compliances are off",
-            ),
+            Warning::NoMasses { has_effects } => {
+                f.write_str(
+                    "the robot's file has no masses, so the torques on its joints are unknown: joint compliances are off",
+                )?;
+                match has_effects {
+                    true => {
+                        f.write_str(", and its effects that follow a load know rod and contact force only")
+                    }
+                    false => Ok(()),
+                }
+            }
             Warning::NotIdentified { combination, relative_error } => {
                 let names: Vec<String> =
                     combination.iter().map(|(parameter, c)| format!("{c:+.2}·{parameter}")).collect();

@@ -126,6 +126,10 @@ mod tests {
                 "[[effect]]\nname = \"weight\"\njoint = 1\nat_joint = 3\nurad_per_m = 9\n",
                 "a joint from 1 to 2",
             ),
+            (
+                "[[effect]]\nname = \"gravity_tilt\"\njoint = 1\nurad_per_nm = 9\n",
+                "no joint: the whole arm tilts",
+            ),
             ("[calibrated]\nlow_deg_or_mm = [1]\nhigh_deg_or_mm = [1, 2]\nsd_mm = 1\n", "2 numbers"),
         ] {
             let message = message(text);

@@ -191,6 +191,26 @@ impl Effect {
         }
     }
 
+    /// True where the torque of a joint, or a moment, matters.
+    pub fn follows_load(&self) -> bool {
+        match self {
+            Effect::Backlash { .. }
+            | Effect::Friction { .. }
+            | Effect::Compliance { .. }
+            | Effect::NonlinearStiffness { .. }
+            | Effect::LinkFlexibility { .. }
+            | Effect::GravityTilt { .. } => true,
+            // an unknown weight is a number by itself
+            Effect::Harmonic { .. }
+            | Effect::Table { .. }
+            | Effect::EncoderScale { .. }
+            | Effect::PlayByApproach { .. }
+            | Effect::Lag { .. }
+            | Effect::Weight { .. }
+            | Effect::Coupling { .. } => false,
+        }
+    }
+
     /// True of a function of its joint's own angle, which a table of corrections can hold.
     pub fn is_of_own_angle(&self) -> bool {
         self.follows() == Follows::OwnAngle

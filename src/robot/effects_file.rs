@@ -49,6 +49,10 @@ pub(super) fn read(toml: &TomlText, spanned: &Spanned<RawEffect>, joints: usize)
         return Ok(Effect::Lag { joint, fraction: finite("effect.fraction", fraction, 1.0)? });
     }
     if raw.name.get_ref() == "gravity_tilt" {
+        if let Some(joint) = &raw.joint {
+            let found = "gravity_tilt has the key `joint`".to_owned();
+            return Err(toml.wrong(joint, found, "no joint: the whole arm tilts"));
+        }
         return match &raw.urad_per_nm {
             Some(tilt) => {
                 Ok(Effect::GravityTilt { per_nm: finite("effect.urad_per_nm", tilt, URAD_PER_NM)? })

@@ -38,8 +38,14 @@ const NOISE: f64 = 20e-6;
 
 /// A robot with these effects, seen by a tracker.
 fn tracked(effects: Vec<Effect>) -> Campaign {
+    tracked_by(Vec::new(), effects)
+}
+
+/// The same of a robot whose file has some.
+fn tracked_by(in_file: Vec<Effect>, effects: Vec<Effect>) -> Campaign {
     let (file, text) = Robot::builtin("tx90").unwrap();
-    let nominal = Robot::from_text(file, text, None, None).unwrap();
+    let mut nominal = Robot::from_text(file, text, None, None).unwrap();
+    nominal.effects = in_file;
     let mut built = nominal.clone();
     built.joints[1].link.a += 0.4e-3;
     built.joints[2].link.theta += 0.3e-3;
@@ -107,6 +113,51 @@ fn what_nature_has_none_of_has_no_name() {
         let effects: Vec<&str> = found.diagnosis.findings.iter().map(|finding| finding.effect.name).collect();
         let own = ["backlash", "joint_friction", "gravity_tilt", "link_flexibility"];
         assert!(!effects.iter().any(|effect| own.contains(effect)), "{effect:?}: {effects:?}");
+    }
+}
+
+/// A file may say too much, and what is written takes it back.
+#[test]
+fn less_than_the_robot_file_says_is_found_and_written() {
+    let tilts = |per_nm: f64| Effect::GravityTilt { per_nm };
+    let plays = |play: f64| Effect::PlayByApproach { joint: 2, play };
+    for (says, is, sentence) in [
+        (tilts(10e-6), tilts(2e-6), "The tilt of the base under the arm's moment is "),
+        (
+            plays(900e-6),
+            plays(300e-6),
+            "The play of joint 3, taken up according to the direction of approach, is ",
+        ),
+    ] {
+        let mut campaign = tracked_by(vec![says], vec![is]);
+        // read from a file, the moves would have been added
+        campaign.measurements.take_up_moves(&campaign.robot, None);
+        campaign.validation.as_mut().unwrap().take_up_moves(&campaign.robot, None);
+        let before = calibrate(&campaign, Mode::None, &Options::default()).unwrap();
+        let found = diagnose_calibrated(&campaign, before).unwrap();
+        let [finding] = &found.diagnosis.findings[..] else { panic!("{:?}", found.diagnosis.findings) };
+        let said = &finding.description.observed;
+        assert!(said.starts_with(sentence) && said.contains(" less than the robot file says"), "{said}");
+        let applied = apply(&found, &names("robot.toml", Some("validation.csv")), &[]).unwrap().unwrap();
+        let again = written(&applied, "");
+        let after = calibrate(&again, Mode::None, &Options::default()).unwrap();
+        assert!(validated(&after) < 1.25 * 3.0f64.sqrt() * NOISE, "{}", validated(&after));
+    }
+}
+
+#[test]
+fn effects_that_follow_a_load_are_warned_of_where_no_mass_is_known() {
+    for (effect, is_warned) in [
+        (Effect::GravityTilt { per_nm: 3e-6 }, true),
+        (Effect::EncoderScale { joint: 1, factor: 1.0001 }, false),
+    ] {
+        let mut campaign = tracked(vec![effect.clone()]);
+        campaign.robot.effects = vec![effect];
+        campaign.robot.joints.iter_mut().for_each(|joint| joint.body = None);
+        let calibration = calibrate(&campaign, Mode::None, &Options::default()).unwrap();
+        let said: Vec<String> = calibration.warnings.iter().map(ToString::to_string).collect();
+        let of_effects = said.iter().any(|said| said.contains("effects that follow a load"));
+        assert_eq!(of_effects, is_warned, "{said:?}");
     }
 }
 

@@ -186,8 +186,8 @@ fn accuracy_is_judged_where_the_campaign_states_limits() {
     // the terminal says so too
     let said = sandbox.run("calibrate sim/limited.toml --mode fea").stdout;
     let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(said.contains("Accuracy: FAIL, mean "), "{said}");
-    assert!(said.contains("poses (asked: largest at most 1.00 µm)."), "{said}");
+    assert!(said.contains("Accuracy at the validation poses: FAIL, largest "), "{said}");
+    assert!(said.contains(" µm, asked at most 1.00 µm."), "{said}");
     // never by the poses of the fit
     let unseen =
         campaign.lines().filter(|line| !line.starts_with("validation")).collect::<Vec<_>>().join("\n");

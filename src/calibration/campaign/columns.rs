@@ -2,7 +2,7 @@
 
 use super::Warning;
 use super::layout::{Role, Seen};
-use crate::delimited::{Row, Table, nearest_name, renamed};
+use crate::delimited::{Row, Table, meant_to_be, nearest_name, renamed};
 use crate::error::Result;
 use crate::robot::{Robot, joint_value};
 
@@ -155,14 +155,13 @@ impl Columns {
         let (column, name) = same_stem.or_else(near)?;
         Some(match column.to_ascii_lowercase().rsplit_once('_') {
             Some((_, "rad")) => format!("{column} would be in radians: convert it to degrees, into {name}"),
-            Some((_, "m")) => format!("{column} would be in metres: convert it to millimetres, into {name}"),
             Some((_, "deg")) if name.ends_with("_mm") => {
                 format!("the joint slides: {name} instead of {column}")
             }
             Some((_, "mm")) if name.ends_with("_deg") => {
                 format!("the joint turns: {name} instead of {column}")
             }
-            _ => format!("is the column {column} meant to be {name}?"),
+            _ => meant_to_be(column, name),
         })
     }
 }

@@ -16,8 +16,6 @@ use crate::inference::{Evidence, Location};
 const WIDE: f64 = 3.0;
 /// So many laws, the likeliest, are tried without each fold.
 const TRIED: usize = 64;
-/// Cosine between what two laws add from which on they are one.
-const SAME: f64 = 0.9;
 /// Times that two laws are fitted, each beside the other.
 const ROUNDS: usize = 2;
 
@@ -128,20 +126,8 @@ fn together(
             described(known, &class, &held_out, curve)
         })
     };
-    let both = [described(0)?, described(1)?];
-    (!are_one(&both)).then_some(both)
-}
-
-/// True of one law told twice: at one place, of one variable, of one form, and what the two add is
-/// the same but for a factor. Waves of two frequencies are two.
-fn are_one([one, other]: &[Law; 2]) -> bool {
-    let (a, b) = (DVector::from_column_slice(&one.adds), DVector::from_column_slice(&other.adds));
-    let is_same = one.site.location == other.site.location
-        && one.site.variable == other.site.variable
-        && one.site.result == other.site.result
-        && one.form == other.form
-        && one.memory == other.memory;
-    is_same && a.dot(&b).abs() > SAME * a.norm() * b.norm()
+    let [one, other] = [described(0)?, described(1)?];
+    (!other.repeats(&one)).then_some([one, other])
 }
 
 impl Both {

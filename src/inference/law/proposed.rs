@@ -1,6 +1,6 @@
 //! A law that is proposed, as data, or why none is.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::form::{Constant, Form, FormConstant};
 use super::memory::Memory;
@@ -36,6 +36,9 @@ pub enum Refusal {
     /// errors by enough.
     Little,
 }
+
+/// Cosine between what two laws add from which on one repeats the other.
+const SAME: f64 = 0.9;
 
 /// A law with its numbers.
 #[derive(Debug, Clone)]
@@ -166,6 +169,16 @@ impl Proposed {
 }
 
 impl Law {
+    /// True where place, variable, form and memory are those of another law, and so is what it adds,
+    /// but for a factor. Waves of two frequencies are two laws.
+    pub fn repeats(&self, other: &Law) -> bool {
+        let [a, b] = [self, other].map(|law| DVector::from_column_slice(&law.adds));
+        (&self.site.location, &self.site.variable, &self.site.result)
+            == (&other.site.location, &other.site.variable, &other.site.result)
+            && (self.form, &self.memory) == (other.form, &other.memory)
+            && a.dot(&b).abs() > SAME * a.norm() * b.norm()
+    }
+
     /// Of its numbers alone, for tests of what is made of them.
     #[cfg(test)]
     pub fn of_numbers(

@@ -57,9 +57,9 @@ pub struct Evidence {
     /// Data of the same number share an error, such as the zero that their readings are offsets
     /// from.
     pub shared: Vec<usize>,
-    /// Data of the same number are of one kind, such as those of one sensor under loads along one
+    /// Data of the same number are one series, such as those of one sensor under loads along one
     /// axis: where many of them are far off, they are no single ones.
-    pub kind: Vec<usize>,
+    pub series: Vec<usize>,
     /// Data of the same number are held out together; those of [`Evidence::NONE`] never are.
     pub fold: Vec<usize>,
     /// Data of the same number belong to one session, such as a clamp or a placement: what is found
@@ -107,7 +107,7 @@ impl Evidence {
             information: 1.0,
             replicate_group: (0..count).collect(),
             shared: (0..count).collect(),
-            kind: vec![0; count],
+            series: vec![0; count],
             fold: vec![Evidence::NONE; count],
             session: vec![Evidence::NONE; count],
             intercept: vec![Evidence::NONE; count],
@@ -151,7 +151,7 @@ impl Evidence {
             information: self.information,
             replicate_group: pick(&self.replicate_group),
             shared: pick(&self.shared),
-            kind: pick(&self.kind),
+            series: pick(&self.series),
             fold: pick(&self.fold),
             session: pick(&self.session),
             intercept: pick(&self.intercept),

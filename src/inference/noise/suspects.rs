@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use super::scatter::Suspect;
 use crate::inference::Evidence;
 
-/// True where so many data are far off that they are no single ones: of all, of one kind, or one
-/// after the other.
+/// True where so many data are far off that they are no single ones: of all, of one series, or
+/// one after the other.
 pub fn are_many(evidence: &Evidence, suspects: &[Suspect]) -> bool {
     suspects.len() > at_most(evidence.recorded)
-        || are_of_one_kind(evidence, suspects)
+        || are_of_one_series(evidence, suspects)
         || are_together(evidence, suspects)
 }
 
@@ -18,20 +18,20 @@ fn at_most(count: usize) -> usize {
     (count / 10).max(3)
 }
 
-/// True where more than a quarter of the data of one kind are far off, and more than five: a
+/// True where more than a quarter of the data of one series are far off, and more than five: a
 /// display that errs is read along some lines only.
-fn are_of_one_kind(evidence: &Evidence, suspects: &[Suspect]) -> bool {
+fn are_of_one_series(evidence: &Evidence, suspects: &[Suspect]) -> bool {
     const SHARE: usize = 4;
     const FEW: usize = 5;
-    // all, and those that are far off
-    let mut kinds: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
-    for &kind in evidence.kind.iter().take(evidence.recorded) {
-        kinds.entry(kind).or_default().0 += 1;
+    // how many, and how many of them are far off
+    let mut all: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
+    for &series in evidence.series.iter().take(evidence.recorded) {
+        all.entry(series).or_default().0 += 1;
     }
     for suspect in suspects {
-        kinds.entry(evidence.kind[suspect.datum]).or_default().1 += 1;
+        all.entry(evidence.series[suspect.datum]).or_default().1 += 1;
     }
-    kinds.values().any(|&(all, far)| far > FEW.max(all / SHARE))
+    all.values().any(|&(count, far)| far > FEW.max(count / SHARE))
 }
 
 /// True where neighbours of a run are far off to one side: so many that they are no single ones, or
@@ -55,10 +55,10 @@ mod tests {
 
     use super::*;
 
-    /// 120 data of four kinds in 30 runs, one of each kind in a run; these are far off, by turns.
+    /// 120 data of four series in 30 runs, one of each in a run; these are far off, by turns.
     fn are_many_of(suspects: impl Iterator<Item = usize>) -> bool {
         let mut evidence = Evidence::new(DVector::zeros(120));
-        evidence.kind = (0..120).map(|datum| datum % 4).collect();
+        evidence.series = (0..120).map(|datum| datum % 4).collect();
         evidence.shared = (0..120).map(|datum| datum / 4).collect();
         let sign = |k: usize| if k.is_multiple_of(2) { 6.0 } else { -6.0 };
         let suspects: Vec<Suspect> =
@@ -67,11 +67,11 @@ mod tests {
     }
 
     #[test]
-    fn a_third_of_one_kind_are_no_single_ones() {
-        // ten over all kinds are a few; so are seven of one
+    fn a_third_of_one_series_are_no_single_ones() {
+        // ten over all series are a few; so are seven of one
         assert!(!are_many_of((0..10).map(|k| 11 * k)));
         assert!(!are_many_of((0..7).map(|k| 4 * k)));
-        // ten of one kind are a third of it
+        // ten of one series are a third of it
         assert!(are_many_of((0..10).map(|k| 4 * k)));
         // and thirteen of all are too many
         assert!(are_many_of((0..13).map(|k| 9 * k)));

@@ -93,7 +93,8 @@ pub struct Rival {
     pub term: Term,
     /// The whole hypothesis with it instead, its term last.
     pub hypothesis: Hypothesis,
-    /// How much less probable that hypothesis is: odds, 1 for as probable.
+    /// How much less probable that hypothesis is: odds, 1 for as probable. Of another effect at its
+    /// likeliest place: how much less probable it is that the effect is anywhere.
     pub odds: f64,
 }
 

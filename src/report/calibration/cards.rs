@@ -85,27 +85,35 @@ fn judged_by(judged: &Accuracy) -> &'static str {
     }
 }
 
-/// The verdict as a sentence, where the campaign asks for one; numbers as fine as their difference.
+/// The verdict as a sentence, where the campaign asks for one.
 pub fn verdict_sentence(campaign: &Campaign, judged: &Accuracy) -> Option<String> {
-    campaign.accuracy.as_ref()?;
-    let asked = asked(campaign).join(", ");
+    let limits = campaign.accuracy.as_ref()?;
     let verdict = match judged.verdict {
         AccuracyVerdict::Pass => "pass",
         AccuracyVerdict::Fail => "FAIL",
         AccuracyVerdict::NotEvaluated => {
+            let asked = asked(campaign).join(", ");
             return Some(format!(
                 "Accuracy: not evaluated, there are no validation poses and none were held out (asked: {asked})."
             ));
         }
     };
     let errors = judged.errors?;
-    let um = |x: f64| significant(x / UM, 4);
-    Some(format!(
-        "Accuracy: {verdict}, mean {} µm, largest {} µm at the {} (asked: {asked}).",
-        um(errors.mean),
-        um(errors.max),
-        judged_by(judged)
-    ))
+    let compared: Vec<String> = [("mean", errors.mean, limits.mean), ("largest", errors.max, limits.max)]
+        .into_iter()
+        .filter_map(|(name, error, limit)| Some((name, apart(error, limit?))))
+        .map(|(name, [error, limit])| format!("{name} {error} µm, asked at most {limit} µm"))
+        .collect();
+    Some(format!("Accuracy at the {}: {verdict}, {}.", judged_by(judged), compared.join("; ")))
+}
+
+/// Two lengths in µm with as many digits as it takes to see that they differ: a mean of 46.004 µm
+/// is not within 46 µm.
+fn apart(one: f64, other: f64) -> [String; 2] {
+    const DIGITS: std::ops::Range<usize> = 3..10;
+    let with = |digits: usize| [one, other].map(|x| significant(x / UM, digits));
+    let differ = DIGITS.map(with).find(|[one, other]| one != other);
+    differ.unwrap_or_else(|| with(DIGITS.start))
 }
 
 /// It predicts.
@@ -124,5 +132,17 @@ fn verdict(campaign: &Campaign, judged: &Accuracy) -> Card {
             Card::new(label, "not evaluated", "no validation poses, and none were held out")
         }
         AccuracyVerdict::NotEvaluated => Card::new(label, "not evaluated", "the campaign states no limits"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_that_is_hardly_missed_is_seen_to_be_missed() {
+        assert_eq!(apart(46.004e-6, 46e-6), ["46.004", "46.000"]);
+        assert_eq!(apart(108.4e-6, 46e-6), ["108", "46.0"]);
+        assert_eq!(apart(46e-6, 46e-6), ["46.0", "46.0"]);
     }
 }

@@ -361,7 +361,53 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
+    use crate::calibration::campaign::FileNames;
     use crate::diagnosis::Limitation;
+    use crate::diagnosis::calibration::apply;
+    use crate::units::UM;
+
+    /// Along the order of the poses, m.
+    fn drift(row: usize) -> Vector3<f64> {
+        Vector3::z() * (5.0 * UM * row as f64)
+    }
+
+    #[test]
+    fn what_held_out_poses_do_not_confirm_is_called_possible_first() {
+        figures::tests::with_diagnosed(&drift, |_, found| {
+            let said = headline(found);
+            assert!(
+                said.starts_with("The base drifts") && said.contains("the held-out error falls"),
+                "{said}"
+            );
+            let mut doubtful = found.clone();
+            doubtful.diagnosis.held_out.as_mut().unwrap().errors_after *= 100.0;
+            let said = headline(&doubtful);
+            assert!(said.starts_with("Possible, but held-out poses do not confirm this ("), "{said}");
+            assert!(said.contains("): The base drifts") && !said.contains("falls"), "{said}");
+        });
+    }
+
+    #[test]
+    fn a_corrected_robot_that_is_worse_at_unseen_poses_is_warned_of() {
+        figures::tests::with_diagnosed(&drift, |campaign, found| {
+            let names = FileNames::new("robot.toml", "measurements.csv");
+            let mut written = apply(found, &names, &[]).unwrap().unwrap();
+            assert!(campaign.validation.is_some() && !written.is_worse());
+            let warnings = |written: &Applied| {
+                let (mut report, mut json) = (Report::default(), json!({}));
+                applied(&mut report, &mut json, written);
+                (report.warnings, json["applied"]["validation_mean_um"].as_f64())
+            };
+            assert_eq!(warnings(&written).0, Vec::<String>::new());
+            written.unseen = Some((78.0 * UM, 606.0 * UM));
+            let (warned, mean) = warnings(&written);
+            assert!(
+                warned[0].contains("606 µm on average, 78 µm without the findings; do not use it"),
+                "{warned:?}"
+            );
+            assert!((mean.unwrap() - 606.0).abs() < 1e-9);
+        });
+    }
 
     /// What residuals of a fit that stopped anywhere seem to say is no agreement.
     #[test]

@@ -9,8 +9,8 @@ use super::super::model::law::Law;
 use super::super::model::{CalibrationModel, Configuration};
 use super::per_torque::per_torque;
 use super::{
-    CalibrationEffect, Context, Entry, Transfer, along, capital, first, first_value, joint, joint_by, lack,
-    law, no_event, own_parameters, single,
+    CalibrationEffect, Context, Entry, Transfer, along, capital, first, first_value, in_file, joint,
+    joint_by, lack, law, no_event, on_top, own_parameters, single,
 };
 use crate::calibration::campaign::Campaign;
 use crate::inference::{
@@ -79,6 +79,11 @@ fn compliances(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
     let of_joint = |(j, largest): (usize, f64)| {
         // with what is modelled no drive turns against its torque
         let modelled = context.configurations.first().map_or(0.0, |there| there.compliance[j]);
+        let modelled = modelled
+            + in_file(context.effects, |effect| match effect {
+                robot::Effect::Compliance { joint, per_nm } if *joint == j => Some(*per_nm),
+                _ => None,
+            });
         let compliance = linear("compliance_urad_per_nm", DEFLECTION / largest);
         let compliance = at_least(-modelled, compliance);
         single(&JOINT_COMPLIANCE, joint(j), compliance, context.turn(j, |_, there| there.torque[j]))
@@ -111,7 +116,13 @@ fn compliance_without_masses(context: &Context, j: usize) -> Option<Entry> {
             let name = frame.map_or("flange_urad_per_m".into(), |k| format!("joint_{}_urad_per_m", k + 1));
             let column = context.turn(j, |_, there| arm(there));
             // drives deflect with their torque, never against it
-            let deflection = at_least(0.0, linear(name, DEFLECTION / largest.max(ONE_POINT)));
+            let known = in_file(context.effects, |effect| match effect {
+                robot::Effect::Weight { joint, at, per_metre } if (*joint, *at) == (j, frame) => {
+                    Some(*per_metre)
+                }
+                _ => None,
+            });
+            let deflection = at_least(-known, linear(name, DEFLECTION / largest.max(ONE_POINT)));
             (largest > ONE_POINT).then_some((frame, (deflection, column)))
         })
         .unzip();
@@ -255,14 +266,25 @@ pub static LINK_FLEXIBILITY: CalibrationEffect = CalibrationEffect {
     },
     candidates: links,
     estimates: own_parameters,
-    observed: |finding, _| {
-        let by = first(finding).say("µrad/(N·m)");
-        format!("The link before {} bends by {by} under the moment there", finding.location)
+    observed: |finding, model| {
+        let known = |joint: usize| bending_in_file(&model.campaign.robot.effects, joint);
+        let known = finding.location.joint().map_or(0.0, known);
+        let (place, by, unit) = (&finding.location, first(finding), "µrad/(N·m)");
+        let plain = || format!("The link before {place} bends by {} under the moment there", by.say(unit));
+        on_top(&format!("The bending of the link before {place}"), by, unit, known).unwrap_or_else(plain)
     },
     write: write_link,
     transfer: Transfer::Candidate,
     event: no_event,
 };
+
+/// k, rad/(N·m).
+fn bending_in_file(effects: &[robot::Effect], own: usize) -> f64 {
+    in_file(effects, |effect| match effect {
+        robot::Effect::LinkFlexibility { joint, per_nm } if *joint == own => Some(*per_nm),
+        _ => None,
+    })
+}
 
 fn write_link(finding: &Finding, _: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
     let Some(joint) = finding.location.joint() else { return WrittenTo::Nowhere };
@@ -283,7 +305,7 @@ fn link(context: &Context, j: usize) -> Option<Entry> {
     let largest = context.largest(|there| bent(there).norm());
     let column = context.column(|_, there| bent(there).cross(&(there.tip - there.origin[j])));
     let size = DEFLECTION / largest.max(f64::MIN_POSITIVE);
-    let bending = at_least(0.0, linear("bending_urad_per_nm", size));
+    let bending = at_least(-bending_in_file(context.effects, j), linear("bending_urad_per_nm", size));
     (largest > 0.0).then(|| single(&LINK_FLEXIBILITY, joint(j), bending, column))
 }
 
@@ -306,13 +328,24 @@ pub static GRAVITY_TILT: CalibrationEffect = CalibrationEffect {
     },
     candidates: tilts,
     estimates: per_torque,
-    observed: |finding, _| {
-        format!("The base tilts by {} under the arm's moment", first(finding).say("µrad/(N·m)"))
+    observed: |finding, model| {
+        let known = tilt_in_file(&model.campaign.robot.effects);
+        let (by, unit) = (first(finding), "µrad/(N·m)");
+        let plain = || format!("The base tilts by {} under the arm's moment", by.say(unit));
+        on_top("The tilt of the base under the arm's moment", by, unit, known).unwrap_or_else(plain)
     },
     write: write_tilt,
     transfer: Transfer::Candidate,
     event: no_event,
 };
+
+/// k, rad/(N·m).
+fn tilt_in_file(effects: &[robot::Effect]) -> f64 {
+    in_file(effects, |effect| match effect {
+        robot::Effect::GravityTilt { per_nm } => Some(*per_nm),
+        _ => None,
+    })
+}
 
 fn write_tilt(finding: &Finding, _: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
     extended.robot.effects.push(robot::Effect::GravityTilt { per_nm: first_value(finding) });
@@ -331,6 +364,6 @@ fn tilt(context: &Context) -> Option<Entry> {
     let largest = context.largest(|there| there.base_moment.norm());
     let column = context.column(|_, there| there.base_moment.cross(&(there.tip - there.base.origin)));
     let size = DEFLECTION / largest.max(f64::MIN_POSITIVE);
-    let tilting = at_least(0.0, linear("tilt_urad_per_nm", size));
+    let tilting = at_least(-tilt_in_file(context.effects), linear("tilt_urad_per_nm", size));
     (largest > 0.0).then(|| single(&GRAVITY_TILT, Location::Part(Part::Base), tilting, column))
 }

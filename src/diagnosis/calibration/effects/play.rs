@@ -6,8 +6,8 @@ use super::super::model::law::{Law, TakenUp};
 use super::joints::{NO_MASSES, loaded};
 use super::per_torque::per_torque;
 use super::{
-    CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, capital, first, first_value, joint,
-    joint_by, lack, law, no_event, own_parameters, single,
+    CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, capital, first, first_value, in_file,
+    joint, joint_by, lack, law, no_event, on_top, own_parameters, single,
 };
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Finding, JointVariable, Kind, NotTestable, Reported, WrittenTo};
@@ -44,7 +44,9 @@ pub static BACKLASH: CalibrationEffect = CalibrationEffect {
 };
 
 fn plays(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
-    let play = || at_least(0.0, linear("play_urad", JOINT_ANGLE));
+    let play = |j: usize, taken_up: TakenUp| {
+        at_least(-play_in_file(context.effects, j, taken_up), linear("play_urad", JOINT_ANGLE))
+    };
     let loaded = loaded(context);
     if loaded.is_empty() {
         lacks.push(lack(&BACKLASH, NO_MASSES));
@@ -52,18 +54,31 @@ fn plays(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let sign = |torque: f64| if torque == 0.0 { 0.0 } else { 0.5 * torque.signum() };
     let by_torque = loaded.into_iter().map(|(j, _)| {
         let hangs = context.turn(j, |_, there| sign(there.torque[j]));
-        single(&BACKLASH, joint(j), play(), hangs).by(Law::Play(TakenUp::ByTorque))
+        let play = play(j, TakenUp::ByTorque);
+        single(&BACKLASH, joint(j), play, hangs).by(Law::Play(TakenUp::ByTorque))
     });
     let by_approach = context.revolute().into_iter().map(|j| {
         let came_from = context.turn(j, |_, there| 0.5 * there.approach[j]);
-        single(&BACKLASH, joint_by(j, "by approach"), play(), came_from).by(Law::Play(TakenUp::ByApproach))
+        let play = play(j, TakenUp::ByApproach);
+        single(&BACKLASH, joint_by(j, "by approach"), play, came_from).by(Law::Play(TakenUp::ByApproach))
     });
     by_torque.chain(by_approach).collect()
 }
 
+/// The whole gap, rad.
+fn play_in_file(effects: &[robot::Effect], own: usize, taken_up: TakenUp) -> f64 {
+    in_file(effects, |effect| match (effect, taken_up) {
+        (robot::Effect::Backlash { joint, play }, TakenUp::ByTorque) if *joint == own => Some(*play),
+        (robot::Effect::PlayByApproach { joint, play }, TakenUp::ByApproach) if *joint == own => Some(*play),
+        _ => None,
+    })
+}
+
 fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
-    let by = match law(finding, model) {
-        Law::Play(TakenUp::ByApproach) => "taken up according to the direction of approach",
+    let (taken_up, by) = match law(finding, model) {
+        Law::Play(TakenUp::ByApproach) => {
+            (TakenUp::ByApproach, "taken up according to the direction of approach")
+        }
         Law::Play(TakenUp::ByTorque)
         | Law::Only
         | Law::Gear(_)
@@ -72,10 +87,13 @@ fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Rod(_)
         | Law::Drift(..)
         | Law::Warms(..)
-        | Law::Moved(_) => "taken up on the side that its load pulls to",
+        | Law::Moved(_) => (TakenUp::ByTorque, "taken up on the side that its load pulls to"),
     };
-    let play = first(finding).say("µrad");
-    format!("{} has {play} of play, {by}", capital(&finding.location))
+    let known = |joint: usize| play_in_file(&model.campaign.robot.effects, joint, taken_up);
+    let known = finding.location.joint().map_or(0.0, known);
+    let what = format!("The play of {}, {by},", finding.location.place());
+    let plain = || format!("{} has {} of play, {by}", capital(&finding.location), first(finding).say("µrad"));
+    on_top(&what, first(finding), "µrad", known).unwrap_or_else(plain)
 }
 
 /// Play by approach needs the order of the poses, wherever it is used.
@@ -127,7 +145,8 @@ fn frictions(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         lacks.push(lack(&JOINT_FRICTION, NO_MASSES));
     }
     let of_joint = |(j, largest): (usize, f64)| {
-        let wound = at_least(0.0, linear("urad_per_nm", JOINT_ANGLE / largest));
+        let known = friction_in_file(context.effects, j);
+        let wound = at_least(-known, linear("urad_per_nm", JOINT_ANGLE / largest));
         let column = context.turn(j, |_, there| 0.5 * there.torque[j].abs() * there.approach[j]);
         single(&JOINT_FRICTION, joint(j), wound, column)
     };
@@ -140,7 +159,21 @@ fn write_friction(finding: &Finding, _: &CalibrationModel, extended: &mut Campai
     WrittenTo::Model
 }
 
-fn friction_observed(finding: &Finding, _: &CalibrationModel) -> String {
-    let per = first(finding).say("µrad/(N·m)");
-    format!("{} stops by {per} of its load apart when it comes from either side", capital(&finding.location))
+/// h, rad/(N·m).
+fn friction_in_file(effects: &[robot::Effect], own: usize) -> f64 {
+    in_file(effects, |effect| match effect {
+        robot::Effect::Friction { joint, per_nm } if *joint == own => Some(*per_nm),
+        _ => None,
+    })
+}
+
+fn friction_observed(finding: &Finding, model: &CalibrationModel) -> String {
+    let known = |joint: usize| friction_in_file(&model.campaign.robot.effects, joint);
+    let known = finding.location.joint().map_or(0.0, known);
+    let (place, per, unit) = (&finding.location, first(finding), "µrad/(N·m)");
+    let plain = || {
+        let (joint, per) = (capital(place), per.say(unit));
+        format!("{joint} stops by {per} of its load apart when it comes from either side")
+    };
+    on_top(&format!("The friction of {place}"), per, unit, known).unwrap_or_else(plain)
 }

@@ -10,7 +10,7 @@ use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Calibration, Compensation, Mode, Robust, plausible_compliances};
 use crate::error::Result;
 use crate::inference::Pattern;
-use crate::robot::{Motion, Setup};
+use crate::robot::{Effect, Motion, Setup};
 
 /// All that effects need to know of a campaign and its calibration.
 pub struct Context<'a> {
@@ -32,6 +32,8 @@ pub struct Context<'a> {
     /// Does the robot's file have masses? Without them the torques are those of rod and contact
     /// alone.
     pub has_masses: bool,
+    /// What the robot's file has of effects already.
+    pub effects: &'a [Effect],
     /// C^F of the rod in {T}, m/N; zero for a rigid one.
     pub force_compliance: Matrix3<f64>,
     /// Deflection of the rod by its own weight in {T} per acceleration of gravity, m/(m/s²).
@@ -122,6 +124,7 @@ impl<'a> Context<'a> {
             noise: 0.0,
             off: vec![0.0; recording.len()],
             has_masses: campaign.robot.has_masses(),
+            effects: &campaign.robot.effects,
             motions: campaign.robot.joints.iter().map(|joint| joint.motion).collect(),
             force_compliance: rod.as_ref().map_or_else(Matrix3::zeros, |rod| rod.force),
             weight_compliance: rod

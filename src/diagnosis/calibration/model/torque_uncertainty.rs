@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 use super::configuration::Configuration;
 use super::context::Context;
 use crate::calibration::campaign::Campaign;
+use crate::robot::across;
 
 /// Relative standard uncertainties of torques.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -23,14 +24,13 @@ pub struct TorqueUncertainty {
 impl TorqueUncertainty {
     pub fn new(campaign: &Campaign, context: &Context) -> TorqueUncertainty {
         let joint = |j: usize| {
-            let axis = |there: &Configuration| there.axis[j];
-            relative(campaign, context, j, &|there, moment| axis(there).dot(&moment).abs())
+            let size = |there: &Configuration, moment: Vector3<f64>| there.axis[j].dot(&moment).abs();
+            relative(campaign, context, j, &|there| there.origin[j], &size)
         };
         TorqueUncertainty {
             joints: (0..context.joint_count()).map(joint).collect(),
-            base: relative(campaign, context, 0, &|there, moment| {
-                let upright = there.gravity.try_normalize(0.0).unwrap_or_default();
-                (moment - upright * upright.dot(&moment)).norm()
+            base: relative(campaign, context, 0, &|there| there.base.origin, &|there, moment| {
+                across(&moment, &there.gravity.try_normalize(0.0).unwrap_or_default()).norm()
             }),
         }
     }
@@ -41,11 +41,12 @@ impl TorqueUncertainty {
     }
 }
 
-/// Where `size` of the moment about a joint's origin is largest.
+/// Where `size` of the moment of all from a joint on, about a point, is largest.
 fn relative(
     campaign: &Campaign,
     context: &Context,
     joint: usize,
+    about: &dyn Fn(&Configuration) -> Vector3<f64>,
     size: &dyn Fn(&Configuration, Vector3<f64>) -> f64,
 ) -> f64 {
     let share = campaign.robot.standard_uncertainty.mass;
@@ -54,7 +55,7 @@ fn relative(
     let at = |there: &Configuration| -> (f64, f64) {
         let (mut whole, mut squares) = (Vector3::zeros(), 0.0);
         for (k, body) in bodies() {
-            let lever = there.link[k].point(&body.centre) - there.origin[joint];
+            let lever = there.link[k].point(&body.centre) - about(there);
             let moment = lever.cross(&(there.gravity * body.mass));
             whole += moment;
             let centre = there.gravity.norm() * body.mass * share * body.centre.norm();

@@ -55,6 +55,14 @@ fn a_hose_that_gets_taut_is_a_threshold() {
         assert_holds(&law.amplitudes[0], 1000.0 * DEG);
         let (_, corner) = law.constant.as_ref().unwrap();
         assert!(corner.low < 0.2 / DEG && 0.2 / DEG < corner.high, "{corner:?}");
+        // twice as much of it is no second law; another form of it is one, and so is what it adds
+        // elsewhere
+        let mut second = law.clone();
+        second.adds.iter_mut().for_each(|add| *add *= -2.0);
+        assert!(second.repeats(law));
+        assert!(!Law { form: Form::Step, ..second.clone() }.repeats(law));
+        second.adds.rotate_right(30);
+        assert!(!second.repeats(law));
         assert!(with < 0.5 * without, "{without} {with}");
     });
 }

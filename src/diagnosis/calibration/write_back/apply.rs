@@ -17,6 +17,9 @@ use crate::inference::{Finding, WrittenTo};
 use crate::robot::{Effect, Robot, corrections_csv, is_urdf};
 use crate::units::UM;
 
+/// By this factor an error has grown, and is not the same within what some poses show of it.
+const WORSE: f64 = 1.1;
+
 /// The robot with what was found.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
@@ -44,9 +47,6 @@ impl Applied {
         self.unseen.is_some_and(|(without, with)| with > WORSE * without)
     }
 }
-
-/// By this factor an error has grown, and is not the same within what some poses show of it.
-const WORSE: f64 = 1.1;
 
 /// A finding as it is beside the law.
 fn beside(law: Option<&Law>, finding: &Finding) -> Finding {

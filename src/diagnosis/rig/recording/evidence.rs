@@ -38,7 +38,7 @@ pub fn of_data(data: &[Datum], nuisance: DMatrix<f64>, large: Option<DVector<f64
         })),
         // the zero of a run is that of one sensor at one place
         shared: numbered(data.iter().map(|d| (d.run, d.sensor()))),
-        kind: numbered(data.iter().map(Datum::line_key)),
+        series: numbered(data.iter().map(Datum::line_key)),
         session: sessions(data),
         fold: folds(data),
         resolution: resolution(data),

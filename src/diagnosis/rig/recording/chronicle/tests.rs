@@ -102,4 +102,8 @@ fn a_displacement_that_is_held_keeps_the_way_that_it_came() {
     let (up, down) = (Some(Phase::Load), Some(Phase::Unload));
     let phases = column(&text, |entry| entry.motion.map(|motion| motion.phase));
     assert_eq!(phases[..9], [up, up, down, down, down, down, up, up, down]);
+    // nothing is unloaded before anything has moved
+    let at_rest = text.replace("dy_um\n", "dy_um\ny,30,0\ny,30,0\n");
+    let phases = column(&at_rest, |entry| entry.motion.map(|motion| motion.phase));
+    assert_eq!(phases[..6], [up, up, up, up, down, down]);
 }

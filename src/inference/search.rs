@@ -139,9 +139,7 @@ impl<'a> Search<'a> {
     fn additions_anew(&self, hypothesis: &Hypothesis) -> Vec<f64> {
         let (present, products) = self.crossed(&hypothesis.terms);
         let before = present.score();
-        let is_linear = self.model.is_linear();
-        let near = |bounds: (f64, f64)| if is_linear { bounds } else { one_sided(bounds) };
-        let bounds = |index: usize| self.model.candidates()[index].scaled_bounds().map(near).collect();
+        let bounds = |index: usize| self.model.candidates()[index].scaled_bounds().map(one_sided).collect();
         let is_open = |&index: &usize| !hypothesis.terms.iter().any(|term| self.excludes(term, index));
         let open: Vec<usize> = (0..self.grams.len()).filter(is_open).collect();
         let about = |part: &[usize]| -> Vec<f64> {

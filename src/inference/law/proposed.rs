@@ -169,8 +169,8 @@ impl Proposed {
 }
 
 impl Law {
-    /// True where place, variable, form and memory are those of another law, and so is what it adds,
-    /// but for a factor. Waves of two frequencies are two laws.
+    /// True where place, variable, form and memory are those of another law, and so is what it
+    /// adds, but for a factor. Waves of two frequencies are two laws.
     pub fn repeats(&self, other: &Law) -> bool {
         let [a, b] = [self, other].map(|law| DVector::from_column_slice(&law.adds));
         (&self.site.location, &self.site.variable, &self.site.result)

@@ -320,17 +320,11 @@ fn a_trial_names_effects_in_its_registry_alone() {
     }
 }
 
-/// Rooms in which a closure or a parameter may still be called `of`.
-const OF_EXEMPT: [&str; 2] = ["report", "diagnosis"];
-
 /// `of(x)` says nothing of what comes out: only what stands behind its type, as `Rate::of`, may be
 /// called so.
 #[test]
 fn nothing_is_called_of() {
-    for Source { file, room, text } in everything() {
-        if file.starts_with("src/") && OF_EXEMPT.contains(&room.as_str()) {
-            continue;
-        }
+    for Source { file, text, .. } in everything() {
         let tokens = tokens(&text);
         let before = |k: usize| k.checked_sub(1).map_or("", |k| tokens[k].as_str());
         for k in (0..tokens.len()).filter(|&k| tokens[k] == "of") {

@@ -163,7 +163,7 @@ fn tips_of(
         let covariance = known.covariance.select_rows(&of_robot).select_columns(&of_robot);
         let by_row = variances(&jacobian.select_columns(&of_robot), &covariance);
         let at_ease = robot.calibrated.as_ref().map(|range| range.sd).filter(|sd| *sd > 0.0);
-        ratios = at_ease.map(|sd| by_row.iter().map(|of| of.sum().sqrt() / sd).collect());
+        ratios = at_ease.map(|sd| by_row.iter().map(|own| own.sum().sqrt() / sd).collect());
         let of_parameters = variances(&aligned(jacobian), &known.covariance);
         variance.iter_mut().zip(of_parameters).for_each(|(sum, own)| *sum += own);
     }

@@ -237,7 +237,7 @@ fn picture(plan: &RigPlan, rod: &Rod) -> Option<super::chart::Figure> {
         let (load_at, read_at) = (at(one.loads.load_station), at(one.loads.read_station));
         for (station, kind) in [(load_at, StationKind::Load), (read_at, StationKind::Reading)] {
             let number = (k + 1).to_string();
-            match marks.iter_mut().find(|(known, of, _)| (*known - station).abs() < MM && *of == kind) {
+            match marks.iter_mut().find(|(at, what, _)| (*at - station).abs() < MM && *what == kind) {
                 Some((_, _, numbers)) => numbers.push(number),
                 None => marks.push((station, kind, vec![number])),
             }

@@ -141,11 +141,11 @@ pub fn bars(title: impl Into<String>, rows: &[OnePercent], picked: &[(usize, &st
     let thick = 0.84 / picked.len().max(1) as f64;
     for (place, ((k, label), (colour, dash))) in picked.iter().zip(looks).enumerate() {
         let top = |row: usize| 0.42 - row as f64 - place as f64 * thick;
-        let bar = |(row, of): (usize, &&OnePercent)| Bar {
+        let bar = |(row, change): (usize, &&OnePercent)| Bar {
             from: top(row) - thick,
             to: top(row),
-            value: of.percent[*k],
-            text: signed(of.percent[*k]),
+            value: change.percent[*k],
+            text: signed(change.percent[*k]),
             ..Bar::default()
         };
         chart = chart.with(Mark::Bars {

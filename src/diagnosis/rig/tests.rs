@@ -47,8 +47,8 @@ fn compliance(rod: &Rod) -> nalgebra::Matrix3<f64> {
 fn find(model: &RigModel, effect: &str, location: &str) -> usize {
     let is_it = |c: &Candidate| c.effect.name == effect && c.location.to_string() == location;
     model.candidates().iter().position(is_it).unwrap_or_else(|| {
-        let of: Vec<_> = model.candidates().iter().filter(|c| c.effect.name == effect).collect();
-        panic!("no {effect} at {location}: {of:#?}")
+        let there: Vec<_> = model.candidates().iter().filter(|c| c.effect.name == effect).collect();
+        panic!("no {effect} at {location}: {there:#?}")
     })
 }
 
@@ -204,9 +204,9 @@ fn effects_and_places_are_named_once() {
         "slip",
         "unknown",
     ] {
-        let of = model.candidates().iter().filter(|c| c.effect.name == effect);
-        assert!(of.clone().count() > 0, "{effect}");
-        assert!(of.into_iter().all(|c| c.is_nonparametric == (effect == "unknown")));
+        let places = model.candidates().iter().filter(|c| c.effect.name == effect);
+        assert!(places.clone().count() > 0, "{effect}");
+        assert!(places.into_iter().all(|c| c.is_nonparametric == (effect == "unknown")));
     }
 }
 

@@ -106,13 +106,13 @@ pub fn for_robot_headline(found: &ForRobot) -> String {
     };
     let um = |size: f64| significant(size / UM, 3);
     let [ranked, front] = found.of_front;
-    let of = match ranked == front {
+    let designs = match ranked == front {
         true => format!("the {front} designs of the front"),
         false => format!("{ranked} designs of a front of {front}"),
     };
-    let of = if front == 1 { "the one design of the front".to_owned() } else { of };
+    let designs = if front == 1 { "the one design of the front".to_owned() } else { designs };
     let best = format!(
-        "Of {of}, {name} leaves this robot the smallest error: {} µm rms in mode {}",
+        "Of {designs}, {name} leaves this robot the smallest error: {} µm rms in mode {}",
         um(rms),
         mode.name()
     );

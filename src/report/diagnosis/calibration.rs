@@ -350,7 +350,7 @@ fn remainder(found: &CalibrationDiagnosis) -> Option<Remainder> {
         },
         rms: left.rms,
         along: covariate.variable,
-        of: "row",
+        sample_of: "row",
         coordinates: &["x", "y", "z"],
         samples: samples.collect(),
     })

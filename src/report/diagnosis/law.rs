@@ -351,8 +351,8 @@ fn picture(law: &Law, name: &str, noun: &str) -> crate::report::chart::Figure {
     };
     let panel = |(direction, (name, _)): (usize, &(String, Vec<f64>))| {
         let own = |points: &[crate::inference::law::Point]| -> Vec<[f64; 2]> {
-            let of = points.iter().filter(|point| point.direction == direction);
-            of.map(|point| [point.x / variable.si, point.value / result.si]).collect()
+            let along = points.iter().filter(|point| point.direction == direction);
+            along.map(|point| [point.x / variable.si, point.value / result.si]).collect()
         };
         let data = own(&law.points);
         let ends =

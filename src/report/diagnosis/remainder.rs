@@ -18,7 +18,7 @@ pub struct Remainder {
     /// What it follows.
     pub along: Variable,
     /// What a sample is of, in JSON and as the head of a column: `readings`, `row`.
-    pub of: &'static str,
+    pub sample_of: &'static str,
     /// Heads of the columns of what is left: `left`, or x, y, z.
     pub coordinates: &'static [&'static str],
     /// Samples of the shape.
@@ -44,7 +44,7 @@ impl Remainder {
         let sample = |sample: &Sample| {
             let um: Vec<f64> = sample.left.iter().map(|left| left / UM).collect();
             let um = if let [um] = um[..] { json!(um) } else { json!(um) };
-            json!({ self.of: sample.json, "value": sample.value, "um": um })
+            json!({ self.sample_of: sample.json, "value": sample.value, "um": um })
         };
         json!({
             "location": self.location,
@@ -60,8 +60,8 @@ impl Remainder {
 
     /// As a table; `noun` is what was recorded.
     pub fn table(&self, noun: &str) -> Table {
-        let of = if self.of == "row" { "pose" } else { self.of };
-        let mut columns = vec![Column::text(of), Column::number(self.along.title(noun), self.along.unit())];
+        let head = if self.sample_of == "row" { "pose" } else { self.sample_of };
+        let mut columns = vec![Column::text(head), Column::number(self.along.title(noun), self.along.unit())];
         columns.extend(self.coordinates.iter().map(|name| Column::number(*name, "µm")));
         let mut table = Table::new("remainder", "The shape of the unexplained error.", columns);
         for sample in &self.samples {

@@ -219,7 +219,7 @@ fn of_curve(
         ),
         rms: left.rms,
         along,
-        of: "readings",
+        sample_of: "readings",
         coordinates: &["left"],
         samples: thinned(means(data, &values, left)),
     }
@@ -255,7 +255,7 @@ fn of_numbers(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
         ),
         rms: left.rms,
         along: Variable::Load,
-        of: "readings",
+        sample_of: "readings",
         coordinates: &["left"],
         samples: thinned(means(data, &loads, left)),
     }
@@ -296,7 +296,7 @@ fn of_conditions(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
         location,
         rms: left.rms,
         along: Variable::Load,
-        of: "readings",
+        sample_of: "readings",
         coordinates: &["left"],
         samples,
     }

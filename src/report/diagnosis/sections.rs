@@ -47,10 +47,15 @@ fn findings(subject: &Subject) -> Section {
     Section::new("What was found", blocks)
 }
 
+/// Whose residual it is, where no coordinate says it.
+fn whose(subject: &Subject) -> String {
+    if subject.per.is_empty() { format!(" of the {}", subject.noun) } else { String::new() }
+}
+
 /// How sure a finding is, and what it may be as well.
 fn details(subject: &Subject, index: usize, finding: &Finding) -> String {
-    let of = if subject.per.is_empty() { format!(" of the {}", subject.noun) } else { String::new() };
-    let mut words = format!("It explains {} µm rms{of}{}", um(finding.explains), subject.per);
+    let whose = whose(subject);
+    let mut words = format!("It explains {} µm rms{whose}{}", um(finding.explains), subject.per);
     if let Some((some, all)) = finding.found_in_folds {
         words += &format!(", and is found in {some} of {all} searches that leave a part of them out");
     }
@@ -79,9 +84,9 @@ fn location(subject: &mut Subject) -> Section {
 fn remains(subject: &Subject) -> Section {
     let diagnosis = subject.diagnosis;
     let Some(left) = &subject.remainder else {
-        let of = if subject.per.is_empty() { format!(" of the {}", subject.noun) } else { String::new() };
+        let whose = whose(subject);
         let words = format!(
-            "The residual{of} is {} µm rms{}; the scatter is {} µm.",
+            "The residual{whose} is {} µm rms{}; the scatter is {} µm.",
             um(diagnosis.error_after()),
             subject.per,
             um(diagnosis.noise)

@@ -201,8 +201,8 @@ pub fn proof(subject: &Subject) -> Section {
             Column::number("p", ""),
         ],
     );
-    let held_out = |of: fn(&HeldOutErrors) -> f64| {
-        diagnosis.held_out.as_ref().map_or("–".to_owned(), |errors| um(of(errors)))
+    let held_out = |which: fn(&HeldOutErrors) -> f64| {
+        diagnosis.held_out.as_ref().map_or("–".to_owned(), |errors| um(which(errors)))
     };
     let test = |test: &Option<LackOfFit>| match test {
         Some(test) => [significant(test.f, 3), significant(test.p_value, 2)],

@@ -97,8 +97,8 @@ pub fn to_one(log10_odds: f64) -> String {
 
 /// Ticks at whole powers of ten, about six of them.
 fn powers(candidates: &[Candidate]) -> Vec<(f64, String)> {
-    let of = candidates.iter().map(|candidate| candidate.log10_odds).filter(|odds| drawable(*odds));
-    let (low, high) = of.fold((0.0f64, 2.0f64), |(low, high), odds| (low.min(odds), high.max(odds)));
+    let drawn = candidates.iter().map(|candidate| candidate.log10_odds).filter(|odds| drawable(*odds));
+    let (low, high) = drawn.fold((0.0f64, 2.0f64), |(low, high), odds| (low.min(odds), high.max(odds)));
     let step = ((high - low) / 6.0).ceil().max(1.0);
     // the axis ends at its outer ticks: beyond every bar and its number
     let room = if low < 0.0 { 0.15 * (high - low) } else { 0.0 };

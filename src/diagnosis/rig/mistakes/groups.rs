@@ -47,7 +47,7 @@ fn split(data: &[Datum], line: &Line, key: impl Fn(&Datum) -> i64) -> Vec<(i64, 
     for &i in &line.data {
         of_key.entry(key(&data[i])).or_default().push(i);
     }
-    of_key.into_iter().map(|(own, of)| (own, group(data, of))).collect()
+    of_key.into_iter().map(|(key, readings)| (key, group(data, readings))).collect()
 }
 
 /// True where the data of a group follow −`slope` instead of `slope`.

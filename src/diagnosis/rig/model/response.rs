@@ -108,7 +108,7 @@ impl RigModel {
         let mut of_session: Vec<Option<Parts>> = Vec::new();
         for &(session, _, _) in &state.of_sessions {
             of_session.resize(of_session.len().max(session + 1), None);
-            let joints = state.of_sessions.iter().filter(|(of, _, _)| *of == session);
+            let joints = state.of_sessions.iter().filter(|(own, _, _)| *own == session);
             let mut softening = state.softening.clone();
             softening.joints.extend(joints.map(|&(_, joint, by)| (joint, by)));
             of_session[session] = Some(structure.softened(&softening));

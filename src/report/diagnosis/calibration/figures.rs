@@ -51,11 +51,11 @@ fn residuals(found: &CalibrationDiagnosis, covariate: &Covariate, joint: Option<
     };
     let is_order = covariate.variable == Variable::Order;
     let series = directions.into_iter().map(|(label, axis)| {
-        let part = |row: usize, of: &Vector3<f64>| match (axis, joint) {
-            (Some(axis), _) => of[axis] / UM,
+        let part = |row: usize, error: &Vector3<f64>| match (axis, joint) {
+            (Some(axis), _) => error[axis] / UM,
             (None, joint) => {
                 let lever = joint.map_or_else(Vector3::zeros, |joint| found.model.tip_jacobians[row][joint]);
-                lever.dot(of) / lever.norm().max(f64::MIN_POSITIVE) / UM
+                lever.dot(error) / lever.norm().max(f64::MIN_POSITIVE) / UM
             }
         };
         let point = |row: usize| {

@@ -38,7 +38,7 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
     let side = if memory == Memory::Side { ("±", r"\pm ") } else { ("", "") };
     let latex_of = |symbol: &str| {
         let greek = [("Δ", r"\Delta "), ("θ", r"\theta"), ("φ", r"\varphi"), ("τ", r"\tau")];
-        let symbol = greek.iter().fold(symbol.to_owned(), |symbol, (letter, of)| symbol.replace(letter, of));
+        let symbol = greek.iter().fold(symbol.to_owned(), |symbol, (letter, command)| symbol.replace(letter, command));
         symbol.replace('\'', r"^{\prime}")
     };
     let x = match memory {
@@ -65,9 +65,9 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         Form::Polynomial(2) => format!("c_1 {x} + c_2 {x}^2"),
         _ => format!("c_1 {x} + c_2 {x}^2 + c_3 {x}^3"),
     };
-    let bracketed = |side: &str, of: String| match side.is_empty() {
-        true => of,
-        false => format!("{side}[{of}]"),
+    let bracketed = |side: &str, inner: String| match side.is_empty() {
+        true => inner,
+        false => format!("{side}[{inner}]"),
     };
     let (where_text, where_latex) = match memory {
         Memory::BoucWen(_) => (

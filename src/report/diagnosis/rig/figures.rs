@@ -53,13 +53,13 @@ pub fn residuals(found: &RigDiagnosis) -> Figure {
     let covariate = seen_along(found);
     let (diagnosis, unexplained) = (&found.diagnosis, found.diagnosis.discrepancy.as_ref());
     let point = |i: usize| {
-        let of = ResidualPoint {
+        let point = ResidualPoint {
             x: covariate.values[i],
             before_um: diagnosis.before[i] / UM,
             after_um: diagnosis.after[i] / UM,
             unexplained_um: unexplained.map_or(0.0, |left| left.shape[i] / UM),
         };
-        (!of.x.is_nan()).then_some(of)
+        (!point.x.is_nan()).then_some(point)
     };
     let names: Vec<String> = data.iter().map(branch_name).collect();
     let shown = series(&names, &diagnosis.before, diagnosis.noise);

@@ -253,8 +253,8 @@ fn unbroken(points: Vec<[f64; 2]>) -> Vec<Vec<[f64; 2]>> {
 }
 
 /// A number of the points, averaged where they stand at the same place.
-fn averages(points: &[ResidualPoint], of: impl Fn(&ResidualPoint) -> f64) -> Vec<[f64; 2]> {
-    let mut sorted: Vec<[f64; 2]> = points.iter().map(|point| [point.x, of(point)]).collect();
+fn averages(points: &[ResidualPoint], value: impl Fn(&ResidualPoint) -> f64) -> Vec<[f64; 2]> {
+    let mut sorted: Vec<[f64; 2]> = points.iter().map(|point| [point.x, value(point)]).collect();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let same = sorted.chunk_by(|a, b| a[0] == b[0]);
     same.map(|group| [group[0][0], group.iter().map(|p| p[1]).sum::<f64>() / group.len() as f64]).collect()

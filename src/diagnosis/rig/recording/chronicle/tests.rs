@@ -8,8 +8,8 @@ fn chronicle(text: &str) -> Vec<Entry> {
     Chronicle::of(&readings.rows, readings.header.driven).rows
 }
 
-fn column<T>(text: &str, of: impl Fn(&Entry) -> T) -> Vec<T> {
-    chronicle(text).iter().map(of).collect()
+fn column<T>(text: &str, value: impl Fn(&Entry) -> T) -> Vec<T> {
+    chronicle(text).iter().map(value).collect()
 }
 
 #[test]

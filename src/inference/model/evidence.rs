@@ -60,6 +60,9 @@ pub struct Evidence {
     /// Data of the same number are one series, such as those of one sensor under loads along one
     /// axis: where many of them are far off, they are no single ones.
     pub series: Vec<usize>,
+    /// Data of the same number were read at one moment by sensors of their own, so that a single
+    /// mistake concerns one of them.
+    pub instant: Vec<usize>,
     /// Data of the same number are held out together; those of [`Evidence::NONE`] never are.
     pub fold: Vec<usize>,
     /// Data of the same number belong to one session, such as a clamp or a placement: what is found
@@ -108,6 +111,7 @@ impl Evidence {
             replicate_group: (0..count).collect(),
             shared: (0..count).collect(),
             series: vec![0; count],
+            instant: (0..count).collect(),
             fold: vec![Evidence::NONE; count],
             session: vec![Evidence::NONE; count],
             intercept: vec![Evidence::NONE; count],
@@ -152,6 +156,7 @@ impl Evidence {
             replicate_group: pick(&self.replicate_group),
             shared: pick(&self.shared),
             series: pick(&self.series),
+            instant: pick(&self.instant),
             fold: pick(&self.fold),
             session: pick(&self.session),
             intercept: pick(&self.intercept),

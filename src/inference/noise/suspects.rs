@@ -1,16 +1,17 @@
 //! Data that are far off: single ones are remarks, many of them are something that nobody named.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::scatter::Suspect;
 use crate::inference::Evidence;
 
-/// True where so many data are far off that they are no single ones: of all, of one series, or
-/// one after the other.
+/// True where so many data are far off that they are no single ones: of all, of one series, one
+/// after the other, or at one moment.
 pub fn are_many(evidence: &Evidence, suspects: &[Suspect]) -> bool {
     suspects.len() > at_most(evidence.recorded)
         || are_of_one_series(evidence, suspects)
         || are_together(evidence, suspects)
+        || are_at_once(evidence, suspects)
 }
 
 /// Of so many data that many may be far off by themselves: a tenth, three at least.
@@ -47,6 +48,13 @@ fn are_together(evidence: &Evidence, suspects: &[Suspect]) -> bool {
         let mut of_one_side = run.chunk_by(|a, b| a == b).filter(|part| part[0].is_some());
         of_one_side.any(|part| part.len() >= TOGETHER || (part.len() > 1 && part.len() == run.len()))
     })
+}
+
+/// True where several sensors are far off at one moment: that is no mistake of one of them, but
+/// something that happened to the rig.
+fn are_at_once(evidence: &Evidence, suspects: &[Suspect]) -> bool {
+    let mut met = BTreeSet::new();
+    suspects.iter().any(|suspect| !met.insert(evidence.instant[suspect.datum]))
 }
 
 #[cfg(test)]
@@ -88,5 +96,16 @@ mod tests {
         };
         assert!(far(&[(7, 5.0), (8, 6.0), (9, 5.0)]));
         assert!(!far(&[(7, 5.0), (8, -6.0), (9, 5.0)]) && !far(&[(7, 5.0), (9, 6.0), (11, 5.0)]));
+    }
+
+    #[test]
+    fn sensors_that_are_off_at_one_moment_are_no_single_ones() {
+        let mut evidence = Evidence::new(DVector::zeros(60));
+        let suspects = [30, 31].map(|datum| Suspect { datum, sigma: 6.0 - 0.4 * datum as f64 });
+        assert!(!are_many(&evidence, &suspects));
+        // three sensors read at each moment
+        evidence.instant = (0..60).map(|datum| datum / 3).collect();
+        assert!(are_many(&evidence, &suspects));
+        assert!(!are_many(&evidence, &suspects[..1]));
     }
 }

@@ -106,10 +106,40 @@ impl Search<'_> {
         match left_over {
             Some(DiscrepancyModel::Curve(longer)) => {
                 let (hypothesis, longer) = self.beside(hypothesis, longer);
+                let (hypothesis, longer) = match self.by_curves_alone(&hypothesis, &longer) {
+                    Some(unnamed) => unnamed,
+                    None => (hypothesis, longer),
+                };
                 (hypothesis, Some(DiscrepancyModel::Curve(longer)))
             }
             other => (hypothesis, other),
         }
+    }
+
+    /// A hypothesis without laws, and the first curve of it, where curves in the place of its laws
+    /// explain about as much as the laws and the one curve of `longer` do: a law that leaves a
+    /// curve may be a part of the same unknown law, and needs its odds against that.
+    fn by_curves_alone(
+        &self,
+        hypothesis: &Hypothesis,
+        longer: &Hypothesis,
+    ) -> Option<(Hypothesis, Hypothesis)> {
+        let is_law = |term: &&Term| self.model.candidates()[term.candidate].effect.kind == Kind::Physics;
+        let laws = hypothesis.terms.iter().filter(is_law).count();
+        if laws == 0 {
+            return None;
+        }
+        let others: Vec<Term> = hypothesis.terms.iter().filter(|term| !is_law(term)).cloned().collect();
+        let unnamed = self.fit(&others);
+        let first = self.longer(&unnamed, &self.additions(&unnamed), true)?;
+        let mut curves = first.clone();
+        for _ in 0..laws {
+            match self.longer(&curves, &self.additions(&curves), true) {
+                Some(more) if more.log_probability > curves.log_probability => curves = more,
+                _ => break,
+            }
+        }
+        (curves.log_probability + NAMED.ln() > longer.log_probability).then_some((unnamed, first))
     }
 
     /// The same, where nothing is named once a curve is in.

@@ -9,7 +9,8 @@
 //!
 //! T is the length of the recording over 1, 1½, 2 … [`MOST_SWINGS`]: half-way between two of them
 //! the waves are an eighth of a swing off at the ends of the recording, and 0.97 of the true one is
-//! seen.
+//! seen. A swing takes [`TO_SEE_ONE`] readings to be seen, so that fewer of them bound the number
+//! of swings.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -21,11 +22,13 @@ use crate::diagnosis::rig::mechanics::action::{Action, Weights};
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::Location;
 
-const MOST_SWINGS: usize = 8;
+const MOST_SWINGS: usize = 12;
 /// Periods that are tried for each swing more.
 const FOR_EACH: usize = 2;
-/// Times from which on as many swings are seen.
-const FEWEST: usize = 4 * MOST_SWINGS;
+/// Times of which a swing needs so many: two, and what uneven ones lose.
+const TO_SEE_ONE: f64 = 2.5;
+/// Times from which on swings are told from a smooth curve.
+const FEWEST: usize = 12;
 
 type Wave = fn(f64) -> f64;
 
@@ -33,9 +36,11 @@ type Wave = fn(f64) -> f64;
 pub(super) fn all(along: Along, coordinate: &Coordinate, data: &[Datum]) -> Vec<Entry> {
     let known: Vec<usize> = (0..data.len()).filter(|&i| coordinate[i].is_some()).collect();
     let times = numbered(known.iter().filter_map(|&i| coordinate[i]).map(f64::to_bits));
-    if times.into_iter().max().is_none_or(|last| last + 1 < FEWEST) {
+    let times = times.into_iter().max().map_or(0, |last| last + 1);
+    if times < FEWEST {
         return Vec::new();
     }
+    let seen = (FOR_EACH as f64 * times as f64 / TO_SEE_ONE) as usize;
     let channels = numbered(known.iter().map(|&i| data[i].channel));
     let count = channels.iter().max().map_or(0, |last| last + 1);
     let own: Vec<Arc<[usize]>> = (0..count)
@@ -75,7 +80,7 @@ pub(super) fn all(along: Along, coordinate: &Coordinate, data: &[Datum]) -> Vec<
     };
     let has_zeros = known.iter().any(|&i| data[i].run != data[known[0]].run);
     let since = if has_zeros { vec![Since::Always, Since::Zero] } else { vec![Since::Always] };
-    let halves = FOR_EACH..=FOR_EACH * MOST_SWINGS;
+    let halves = FOR_EACH..=seen.min(FOR_EACH * MOST_SWINGS);
     halves.flat_map(|half| since.iter().map(move |&since| (half, since))).map(swings).collect()
 }
 
@@ -114,13 +119,14 @@ mod tests {
         let data = datum::all(&Readings::from_text("f", &text).unwrap().rows);
         let coordinate: Coordinate = data.iter().map(|d| d.time.map(|t| t / 390.0)).collect();
         let entries = all(TIME, &coordinate, &data);
-        // 1, 1½ … 8 swings, each always and since the zeros of the runs
-        assert_eq!(entries.len(), 30);
+        // 1, 1½ … 12 swings, each always and since the zeros of the runs
+        assert_eq!(entries.len(), 46);
         assert!(
             entries.iter().all(|(candidate, actions)| candidate.parameters.len() == 4 && actions.len() == 4)
         );
-        // of too few times none
-        assert!(all(TIME, &coordinate, &data[..60]).is_empty());
+        // 20 times show eight swings, and eleven too few
+        assert_eq!(all(TIME, &coordinate[..40].to_vec(), &data[..40]).len(), 30);
+        assert!(all(TIME, &coordinate[..22].to_vec(), &data[..22]).is_empty());
     }
 
     #[test]
@@ -131,7 +137,7 @@ mod tests {
         let data = datum::all(&Readings::from_text("f", &text).unwrap().rows);
         let coordinate: Coordinate = data.iter().map(|d| d.time.map(|t| t / 390.0)).collect();
         let entries = all(TIME, &coordinate, &data);
-        assert_eq!(entries.len(), 30);
+        assert_eq!(entries.len(), 46);
         let label = |entry: &Entry| entry.0.location.to_string();
         let (_, actions) = entries
             .iter()

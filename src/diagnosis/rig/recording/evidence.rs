@@ -39,6 +39,7 @@ pub fn of_data(data: &[Datum], nuisance: DMatrix<f64>, large: Option<DVector<f64
         // the zero of a run is that of one sensor at one place
         shared: numbered(data.iter().map(|d| (d.run, d.sensor()))),
         series: numbered(data.iter().map(Datum::line_key)),
+        instant: numbered(data.iter().map(|d| d.row)),
         session: sessions(data),
         fold: folds(data),
         resolution: resolution(data),

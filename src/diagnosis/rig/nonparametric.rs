@@ -16,6 +16,9 @@
 //!
 //! What is softer along the rod here than there is a curve over its stations ([`station`]).
 //!
+//! What comes at once and dies away has rivals that begin at every reading ([`transient`]), what
+//! comes and goes with one period such of two waves ([`swing`]).
+//!
 //! What sets in at a load, or acts one way, has rivals of one number ([`kink`]). What comes and
 //! goes in time has finer curves besides, of [`FINE`] columns of which the first
 //! half are of one size.
@@ -26,6 +29,7 @@ mod cycles;
 mod kink;
 mod station;
 mod swing;
+mod transient;
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -67,7 +71,8 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
             deflections[i]
         }));
         if along.variable == clock && !is_of_line {
-            curves.extend(swing::all(along, &coordinate, data));
+            curves.extend(swing::in_time(along, &coordinate, data));
+            curves.extend(transient::all(along, &coordinate, data));
         }
         for (place, group) in if is_of_line { &lines } else { &channels } {
             let largest = group.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
@@ -100,6 +105,7 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
             |i| deflections[i],
         ));
     }
+    entries.extend(swing::of_displays(data, deflections));
     entries.extend(along_the_load(data));
     entries.extend(kink::all(data, deflections));
     if let Body::Rod(structure) = body {

@@ -1,6 +1,6 @@
 //! Data that are far off: single ones are remarks, many of them are something that nobody named.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::scatter::Suspect;
 use crate::inference::Evidence;
@@ -50,11 +50,18 @@ fn are_together(evidence: &Evidence, suspects: &[Suspect]) -> bool {
     })
 }
 
-/// True where several sensors are far off at one moment: that is no mistake of one of them, but
-/// something that happened to the rig.
+/// True where all sensors, two at least, are far off at one moment: that is no mistake of one of
+/// them, but something that happened to the rig.
 fn are_at_once(evidence: &Evidence, suspects: &[Suspect]) -> bool {
-    let mut met = BTreeSet::new();
-    suspects.iter().any(|suspect| !met.insert(evidence.instant[suspect.datum]))
+    // how many, and how many of them are far off
+    let mut moments: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
+    for &instant in evidence.instant.iter().take(evidence.recorded) {
+        moments.entry(instant).or_default().0 += 1;
+    }
+    for suspect in suspects {
+        moments.entry(evidence.instant[suspect.datum]).or_default().1 += 1;
+    }
+    moments.values().any(|&(count, far)| far > 1 && far == count)
 }
 
 #[cfg(test)]
@@ -101,11 +108,11 @@ mod tests {
     #[test]
     fn sensors_that_are_off_at_one_moment_are_no_single_ones() {
         let mut evidence = Evidence::new(DVector::zeros(60));
-        let suspects = [30, 31].map(|datum| Suspect { datum, sigma: 6.0 - 0.4 * datum as f64 });
+        let suspects = [30, 31, 32].map(|datum| Suspect { datum, sigma: [6.0, -7.0][datum % 2] });
         assert!(!are_many(&evidence, &suspects));
         // three sensors read at each moment
         evidence.instant = (0..60).map(|datum| datum / 3).collect();
         assert!(are_many(&evidence, &suspects));
-        assert!(!are_many(&evidence, &suspects[..1]));
+        assert!(!are_many(&evidence, &suspects[..2]));
     }
 }

@@ -44,6 +44,7 @@ pub(super) const SINCE_CHANGE: Along = along(
 );
 pub(super) const LOAD_BEFORE: Along =
     along("load before", "follows the load that hung before", Variable::Order);
+pub(super) const READING: Along = along("reading", "follows the reading itself", Variable::Load);
 pub(super) const TEMPERATURE: Along = along("temperature", "follows the temperature", Variable::Temperature);
 pub(super) const POSITION: Along =
     along_the_recording("position in the run", "follows the position in the run", Variable::Order);

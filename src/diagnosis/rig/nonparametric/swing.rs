@@ -1,26 +1,28 @@
-//! What comes and goes in time with one period: a few numbers find what no curve of many does.
+//! What comes and goes with one period, in time or along a display: a few numbers find what no
+//! curve of many does.
 //!
 //! ```text
-//! y + a·cos(2πt/T) + b·sin(2πt/T)      a, b vectors: a number for each channel
+//! y + a·cos(2πx/T) + b·sin(2πx/T)      a, b vectors: a number for each channel
 //! ```
 //!
-//! or, where runs have zeros of their own, what has come since the zero was taken: each wave less
-//! its value at the first reading of the run.
+//! In time x is that of the reading; where runs have zeros of their own, also what has come since
+//! the zero was taken: each wave less its value at the first reading of the run. Along a display,
+//! whose scale or interpolation errs, x is the reading, and the waves are nothing at its zero.
 //!
-//! T is the length of the recording over 1, 1½, 2 … [`MOST_SWINGS`]: half-way between two of them
-//! the waves are an eighth of a swing off at the ends of the recording, and 0.97 of the true one is
-//! seen. A swing takes [`TO_SEE_ONE`] readings to be seen, so that fewer of them bound the number
-//! of swings.
+//! T is the range of x over 1, 1½, 2 … [`MOST_SWINGS`]: half-way between two of them the waves are
+//! an eighth of a swing off at the ends, and 0.97 of the true one is seen. A swing takes
+//! [`TO_SEE_ONE`] different x to be seen, so that fewer of them bound the number of swings.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::super::numbering::numbered;
-use super::along::{Along, Coordinate, LEAST_SHIFT, SHARE, largest_reading, rival};
+use super::along::{Along, Coordinate, LEAST_SHIFT, READING, SHARE, largest_reading, rival};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
 use crate::diagnosis::rig::mechanics::action::{Action, Weights};
 use crate::diagnosis::rig::recording::datum::Datum;
-use crate::inference::Location;
+use crate::inference::{Candidate, Location};
+use crate::statistics::median;
 
 const MOST_SWINGS: usize = 12;
 /// Periods that are tried for each swing more.
@@ -29,66 +31,116 @@ const FOR_EACH: usize = 2;
 const TO_SEE_ONE: f64 = 2.5;
 /// Times from which on swings are told from a smooth curve.
 const FEWEST: usize = 12;
+/// Readings that differ by less than this part of the range are the same.
+const LEVELS: f64 = 50.0;
+/// Weight of one period of a display beside that of a curve.
+const OF_DISPLAY: f64 = 0.1;
 
 type Wave = fn(f64) -> f64;
 
-/// All periods, over a coordinate from 0 to 1.
-pub(super) fn all(along: Along, coordinate: &Coordinate, data: &[Datum]) -> Vec<Entry> {
+/// All periods, over a coordinate in time from 0 to 1.
+pub(super) fn in_time(along: Along, coordinate: &Coordinate, data: &[Datum]) -> Vec<Entry> {
     let known: Vec<usize> = (0..data.len()).filter(|&i| coordinate[i].is_some()).collect();
-    let times = numbered(known.iter().filter_map(|&i| coordinate[i]).map(f64::to_bits));
-    let times = times.into_iter().max().map_or(0, |last| last + 1);
-    if times < FEWEST {
-        return Vec::new();
+    let Some(halves) = halves(known.iter().filter_map(|&i| coordinate[i])) else { return Vec::new() };
+    let x: Vec<f64> = coordinate.iter().map(|x| x.unwrap_or(0.0)).collect();
+    let start: Vec<f64> = starts(coordinate, data).into_iter().map(|x| x.unwrap_or(0.0)).collect();
+    let has_zeros = known.iter().any(|&i| data[i].run != data[known[0]].run);
+    let since = [(None, ""), (Some(&start[..]), ", since the zero of each run")];
+    let since = &since[..if has_zeros { 2 } else { 1 }];
+    let channels = by_channel(&known, data);
+    let at = |(half, &(start, said)): (usize, &(Option<&[f64]>, &str))| {
+        let place = format!("{} swings, all sensors{said}", half as f64 / FOR_EACH as f64);
+        waves(along, &place, half, (&x, start), &channels, data)
+    };
+    halves.flat_map(|half| since.iter().map(move |since| (half, since))).map(at).collect()
+}
+
+/// All periods of all displays, and of each alone. `deflections`: by the base model, m.
+pub(super) fn of_displays(data: &[Datum], deflections: &[f64]) -> Vec<Entry> {
+    let shown = expected(data, deflections);
+    let everything: Vec<usize> = (0..data.len()).collect();
+    let channels = by_channel(&everything, data);
+    let zero = vec![0.0; data.len()];
+    let of_group = |(name, channels): (String, &[Arc<[usize]>])| {
+        let largest = |group: &[usize]| group.iter().fold(0.0, |most: f64, &i| most.max(shown[i].abs()));
+        let range = channels.iter().map(|group| largest(group)).fold(0.0, f64::max);
+        let x: Vec<f64> = shown.iter().map(|shown| shown / range).collect();
+        // the one that moves most shows it
+        let widest = channels.iter().find(|group| largest(group) >= range);
+        let level = |&i: &usize| (LEVELS * x[i]).round();
+        let halves = widest.filter(|_| range > 0.0).and_then(|group| halves(group.iter().map(level)));
+        let at = |half: usize| {
+            let place = format!("{} swings, {name}", half as f64 / FOR_EACH as f64);
+            let (candidate, actions) = waves(READING, &place, half, (&x, Some(&zero)), channels, data);
+            // all periods together are one curve
+            (Candidate { weight: OF_DISPLAY, ..candidate }, actions)
+        };
+        halves.into_iter().flatten().map(at).collect::<Vec<Entry>>()
+    };
+    let each =
+        channels.iter().map(|group| (format!("d{}", data[group[0]].channel), std::slice::from_ref(group)));
+    let all = (channels.len() > 1).then(|| ("all displays".to_owned(), &channels[..]));
+    all.into_iter().chain(each).flat_map(of_group).collect()
+}
+
+/// What the displays show but for single errors, m: the deflection by the model, as much steeper on
+/// each line as the readings are.
+fn expected(data: &[Datum], deflections: &[f64]) -> Vec<f64> {
+    let line = numbered(data.iter().map(Datum::line_key));
+    let mut ratios = vec![Vec::new(); line.iter().max().map_or(0, |last| last + 1)];
+    for ((datum, &deflection), &line) in data.iter().zip(deflections).zip(&line) {
+        if deflection != 0.0 {
+            ratios[line].push(datum.measured / deflection);
+        }
     }
-    let seen = (FOR_EACH as f64 * times as f64 / TO_SEE_ONE) as usize;
+    let steeper: Vec<f64> = ratios.iter().map(|ratios| median(ratios).unwrap_or(1.0)).collect();
+    deflections.iter().zip(&line).map(|(deflection, &line)| deflection * steeper[line]).collect()
+}
+
+/// The numbers of half swings that so many different x let see; nothing of too few.
+fn halves(x: impl Iterator<Item = f64>) -> Option<std::ops::RangeInclusive<usize>> {
+    let different = numbered(x.map(f64::to_bits)).into_iter().max()? + 1;
+    let seen = (FOR_EACH as f64 * different as f64 / TO_SEE_ONE) as usize;
+    (different >= FEWEST).then_some(FOR_EACH..=seen.min(FOR_EACH * MOST_SWINGS))
+}
+
+/// These data by channel.
+fn by_channel(known: &[usize], data: &[Datum]) -> Vec<Arc<[usize]>> {
     let channels = numbered(known.iter().map(|&i| data[i].channel));
     let count = channels.iter().max().map_or(0, |last| last + 1);
-    let own: Vec<Arc<[usize]>> = (0..count)
-        .map(|k| known.iter().zip(&channels).filter(|(_, own)| **own == k).map(|(&i, _)| i).collect())
-        .collect();
+    let own = |k: usize| known.iter().zip(&channels).filter(move |(_, own)| **own == k).map(|(&i, _)| i);
+    (0..count).map(|k| own(k).collect()).collect()
+}
+
+/// Two waves of each group over x, less their value at the start where there is one.
+fn waves(
+    along: Along,
+    place: &str,
+    half: usize,
+    (x, start): (&[f64], Option<&[f64]>),
+    groups: &[Arc<[usize]>],
+    data: &[Datum],
+) -> Entry {
+    let turns = half as f64 / FOR_EACH as f64;
     let size = |own: &[usize]| {
         let largest = own.iter().fold(0.0, |most: f64, &i| most.max(data[i].measured.abs()));
         0.5 * (SHARE * largest).max(LEAST_SHIFT * largest_reading(data))
     };
-    let started = starts(coordinate, data);
-    let swings = |(half, since): (usize, Since)| {
-        let turns = half as f64 / FOR_EACH as f64;
-        let of_own = |(own, wave): (&Arc<[usize]>, Wave)| {
-            let at = |&i: &usize| {
-                let now = coordinate[i].map_or(0.0, |x| wave(TAU * turns * x));
-                match since {
-                    Since::Always => now,
-                    Since::Zero => now - started[i].map_or(0.0, |x| wave(TAU * turns * x)),
-                }
-            };
-            let weights = Weights { data: Arc::clone(own), values: own.iter().map(at).collect() };
-            (parameter("um", 0.0, size(own), UNBOUNDED), Action::Shift(weights))
-        };
-        let waves: [Wave; 2] = [f64::cos, f64::sin];
-        let all = own.iter().flat_map(|own| waves.map(|wave| (own, wave)));
-        let (parameters, actions) = all.map(of_own).unzip();
-        let place = match since {
-            Since::Always => format!("{turns} swings, all sensors"),
-            Since::Zero => format!("{turns} swings, all sensors, since the zero of each run"),
-        };
-        let location = Location::Curve {
-            label: format!("{}, {place}", along.name),
-            follows: along.follows(&place),
-            along: Some(along.variable),
-        };
-        (rival(location, parameters), actions)
+    let of_group = |(own, wave): (&Arc<[usize]>, Wave)| {
+        let at =
+            |&i: &usize| wave(TAU * turns * x[i]) - start.map_or(0.0, |start| wave(TAU * turns * start[i]));
+        let weights = Weights { data: Arc::clone(own), values: own.iter().map(at).collect() };
+        (parameter("um", 0.0, size(own), UNBOUNDED), Action::Shift(weights))
     };
-    let has_zeros = known.iter().any(|&i| data[i].run != data[known[0]].run);
-    let since = if has_zeros { vec![Since::Always, Since::Zero] } else { vec![Since::Always] };
-    let halves = FOR_EACH..=seen.min(FOR_EACH * MOST_SWINGS);
-    halves.flat_map(|half| since.iter().map(move |&since| (half, since))).map(swings).collect()
-}
-
-/// From where on a wave counts.
-#[derive(Clone, Copy)]
-enum Since {
-    Always,
-    Zero,
+    let waves: [Wave; 2] = [f64::cos, f64::sin];
+    let all = groups.iter().flat_map(|own| waves.map(|wave| (own, wave)));
+    let (parameters, actions) = all.map(of_group).unzip();
+    let location = Location::Curve {
+        label: format!("{}, {place}", along.name),
+        follows: along.follows(place),
+        along: Some(along.variable),
+    };
+    (rival(location, parameters), actions)
 }
 
 /// The coordinate of the first reading of each datum's run.
@@ -111,6 +163,7 @@ mod tests {
     use super::*;
     use crate::diagnosis::rig::recording::datum;
     use crate::rig::readings::Readings;
+    use crate::spatial::Axis;
 
     #[test]
     fn each_period_has_two_waves_of_every_channel() {
@@ -118,15 +171,37 @@ mod tests {
         let text = "axis,load_n,time_s,dy_um,dz_um\n".to_owned() + &(0..40).map(row).collect::<String>();
         let data = datum::all(&Readings::from_text("f", &text).unwrap().rows);
         let coordinate: Coordinate = data.iter().map(|d| d.time.map(|t| t / 390.0)).collect();
-        let entries = all(TIME, &coordinate, &data);
+        let entries = in_time(TIME, &coordinate, &data);
         // 1, 1½ … 12 swings, each always and since the zeros of the runs
         assert_eq!(entries.len(), 46);
         assert!(
             entries.iter().all(|(candidate, actions)| candidate.parameters.len() == 4 && actions.len() == 4)
         );
         // 20 times show eight swings, and eleven too few
-        assert_eq!(all(TIME, &coordinate[..40].to_vec(), &data[..40]).len(), 30);
-        assert!(all(TIME, &coordinate[..22].to_vec(), &data[..22]).is_empty());
+        assert_eq!(in_time(TIME, &coordinate[..40].to_vec(), &data[..40]).len(), 30);
+        assert!(in_time(TIME, &coordinate[..22].to_vec(), &data[..22]).is_empty());
+    }
+
+    #[test]
+    fn the_wave_of_a_display_is_one_of_what_it_shows() {
+        // 24 loads; dy reads twice what the model says, dz nothing
+        let row = |i: usize| format!("y,{i},{},0\n", 20 * i);
+        let text = "axis,load_n,dy_um,dz_um\n".to_owned() + &(1..25).map(row).collect::<String>();
+        let mut data = datum::all(&Readings::from_text("f", &text).unwrap().rows);
+        let deflections: Vec<f64> =
+            data.iter().map(|d| if d.channel == Axis::Y { 10e-6 * d.drive() } else { 0.0 }).collect();
+        data[10].measured += 1e-4;
+        let entries = of_displays(&data, &deflections);
+        // 1, 1½ … 9½ swings of both displays, and of dy alone
+        assert_eq!(entries.len(), 36);
+        let label = "reading, 2 swings, dy";
+        let (_, actions) =
+            entries.iter().find(|(candidate, _)| candidate.location.to_string() == label).unwrap();
+        let Action::Shift(weights) = &actions[1] else { panic!("a shift") };
+        for (i, weight) in weights.iter() {
+            let wave = (TAU * 2.0 * (i / 2 + 1) as f64 / 24.0).sin();
+            assert!((weight - wave).abs() < 1e-12, "{i}: {weight}");
+        }
     }
 
     #[test]
@@ -136,7 +211,7 @@ mod tests {
             "axis,load_n,trial,time_s,dy_um,dz_um\n".to_owned() + &(0..40).map(row).collect::<String>();
         let data = datum::all(&Readings::from_text("f", &text).unwrap().rows);
         let coordinate: Coordinate = data.iter().map(|d| d.time.map(|t| t / 390.0)).collect();
-        let entries = all(TIME, &coordinate, &data);
+        let entries = in_time(TIME, &coordinate, &data);
         assert_eq!(entries.len(), 46);
         let label = |entry: &Entry| entry.0.location.to_string();
         let (_, actions) = entries

@@ -53,7 +53,7 @@ impl Answer {
         Answer { json, long: None, report, files: Vec::new(), status: 0 }
     }
 
-    /// All of the JSON, with the warnings of the report: the same words for people and for programs.
+    /// All of the JSON, with the warnings of the report: people and programs get the same words.
     ///
     /// ```
     /// use rodcal::answer::{ComplianceOptions, compliance};

@@ -156,7 +156,8 @@ impl Table {
         String::from_utf8(bytes).map_err(|e| failed(e.to_string()))
     }
 
-    /// As many rows as anybody reads, and a note that says how many more there are and `where_else`.
+    /// As many rows as anybody reads, and a note that says how many more there are, and
+    /// `where_else`.
     pub(super) fn shortened(&self, where_else: &str) -> Cow<'_, Table> {
         let more = self.rows.len().saturating_sub(MOST_ROWS);
         if more == 0 {

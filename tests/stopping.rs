@@ -1,5 +1,7 @@
 //! What takes long ends soon after somebody asks for it, wherever it is.
 
+#![allow(clippy::unwrap_used)]
+
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 

@@ -8,6 +8,7 @@ mod calibration;
 mod design;
 mod diagnosis;
 mod forecast;
+mod json;
 mod neighbours;
 mod rig;
 mod robot;
@@ -18,9 +19,10 @@ pub use calibration::{calibrate, calibrate_held_out, calibrated_robot, compare, 
 pub use design::{DesignRod, design_poses, design_rig, design_rod};
 pub use diagnosis::{diagnose_calibration, diagnose_rig, diagnose_rig_with};
 pub use forecast::forecast;
+pub use json::{LongList, write_json};
 pub use neighbours::{neighbours, rods_beside};
 pub use rig::rig_fit;
-pub use robot::predict;
+pub use robot::{predict, predicted};
 pub use rod::{ComplianceOptions, compliance};
 pub use simulation::{Simulated, named_robot, simulate};
 
@@ -32,8 +34,10 @@ use crate::report::Report;
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Answer {
-    /// For programs: the keys of `--json`, without the warnings.
+    /// For programs: the keys of `--json`, without the warnings and what is in `long`.
     pub json: Value,
+    /// The list of the JSON that may be too long to be held.
+    pub long: Option<LongList>,
     /// For people.
     pub report: Report,
     /// Names and contents of what belongs to the answer beside its report: rods, robots, poses.
@@ -46,10 +50,10 @@ pub struct Answer {
 impl Answer {
     /// An answer without files, status 0.
     pub fn new(json: Value, report: Report) -> Answer {
-        Answer { json, report, files: Vec::new(), status: 0 }
+        Answer { json, long: None, report, files: Vec::new(), status: 0 }
     }
 
-    /// The JSON with the warnings of the report: the same words for people and for programs.
+    /// All of the JSON, with the warnings of the report: people and programs get the same words.
     ///
     /// ```
     /// use rodcal::answer::{ComplianceOptions, compliance};
@@ -64,6 +68,9 @@ impl Answer {
     /// ```
     pub fn whole_json(&self) -> Value {
         let mut json = self.json.clone();
+        if let Some(long) = &self.long {
+            json[long.key] = long.items().collect();
+        }
         json["warnings"] = self.report.warnings.as_slice().into();
         json
     }

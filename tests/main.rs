@@ -21,4 +21,5 @@ mod nist;
 mod references;
 mod rig_fit;
 mod robot_files;
+mod stopping;
 mod validation;

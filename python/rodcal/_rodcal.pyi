@@ -178,6 +178,7 @@ def compliance(
     contact_force_n: float | None,
     load_station_mm: float | None,
     read_station_mm: float | None,
+    damping_percent: float | None,
 ) -> Answer: ...
 def rig_fit(
     rod: Rod | None, readings: Readings, theory: str, elements: int, robust: str, progress: _Tell

@@ -71,12 +71,14 @@ def compliance(
     contact_force_n: float | None = None,
     load_station_mm: float | None = None,
     read_station_mm: float | None = None,
+    damping_percent: float | None = None,
 ) -> ComplianceResult:
     """How much a rod bends, from its drawing: C^F and C^g of shape (3, 3), and c_rod.
 
     ``mode`` is the beam model of the rod as built (``"fea"``) or the paper's closed form
     (``"calc"``). ``contact_force_n`` is the size of the force in c_rod (1.97 N, the paper's). With a
-    station (arc length from the flange, mm) the answer also has one point under a force at another.
+    station (arc length from the flange, mm) the answer also has one point under a force at another;
+    with ``damping_percent`` (of critical damping) the settling times of the natural frequencies.
 
     >>> result = compliance("rods/5.toml")
     >>> round(float(result.cf_um_per_n[1, 1]), 2)
@@ -85,7 +87,7 @@ def compliance(
     402.0
     """
     answer = _rodcal.compliance(
-        as_rod(rod)._native, mode, theory, elements, contact_force_n, load_station_mm, read_station_mm
+        as_rod(rod)._native, mode, theory, elements, contact_force_n, load_station_mm, read_station_mm, damping_percent
     )
     warn(answer.warnings)
     return ComplianceResult(answer)

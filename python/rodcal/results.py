@@ -192,6 +192,7 @@ class ComplianceResult(Result):
     tip_mm: Array
     mass_g: float
     natural_frequencies_hz: Array | None
+    settling_times_s: Array | None
     contributions: list[Contribution]
     stations: Stations | None
 

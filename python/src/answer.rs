@@ -40,7 +40,7 @@ impl Answer {
         let own = &self.0;
         let wrong = |error: rmp_serde::encode::Error| PyValueError::new_err(error.to_string());
         let report = rmp_serde::to_vec(&own.report).map_err(wrong)?;
-        let json = rmp_serde::to_vec(&own.json).map_err(wrong)?;
+        let json = rmp_serde::to_vec(&own.whole_json()).map_err(wrong)?;
         let files = own.files.iter().map(|(name, content)| (name.clone(), PyBytes::new(py, content)));
         let parts = (PyBytes::new(py, &report), PyBytes::new(py, &json), files.collect(), own.status);
         Ok((py.get_type::<Answer>().getattr("restored")?, parts))
@@ -53,7 +53,7 @@ impl Answer {
 
     /// The report as a piece of a page.
     fn html(&self) -> String {
-        html::fragment(&self.0.report)
+        delimited::visible_lines(&html::fragment(&self.0.report)).into_owned()
     }
 
     /// The report as the command prints it, in so many columns.
@@ -95,7 +95,11 @@ impl Answer {
     fn write(&self, py: Python<'_>, directory: std::path::PathBuf, is_forced: bool) -> PyResult<()> {
         let mut written = self.0.report.files().or_raise(py)?;
         written.extend(self.0.files.iter().cloned());
-        written.push(("result.json".into(), format!("{:#}\n", self.0.whole_json()).into_bytes()));
+        let mut json = self.0.json.clone();
+        json["warnings"] = self.0.report.warnings.as_slice().into();
+        let mut result = Vec::new();
+        rodcal::answer::write_json(&json, self.0.long.as_ref(), &mut result)?;
+        written.push(("result.json".into(), result));
         let existing = if is_forced { Existing::Replace } else { Existing::Keep };
         py.detach(|| files::write_together(&directory, &written, existing)).or_raise(py)
     }

@@ -14,7 +14,7 @@ use rodcal::calibration::{
 use rodcal::diagnosis::calibration::Neighbours;
 use rodcal::files::{self, Existing};
 use rodcal::limits;
-use rodcal::report::prediction::{self, Prediction};
+use rodcal::report::prediction::Prediction;
 use rodcal::robot::PredictionQuery;
 use rodcal::units::{MM, UM};
 
@@ -160,12 +160,8 @@ impl Predicted {
     }
 
     fn answer(&self) -> Answer {
-        let answer = self.answer.get_or_init(|| {
-            rodcal::answer::Answer::new(
-                prediction::json(&self.robot, &self.prediction),
-                prediction::report(&self.robot, &self.prediction),
-            )
-        });
+        let answer =
+            self.answer.get_or_init(|| answer::predicted(self.robot.clone(), self.prediction.clone()));
         Answer(answer.clone())
     }
 }

@@ -33,11 +33,15 @@ pub fn compliance(
     contact_force_n: Option<f64>,
     load_station_mm: Option<f64>,
     read_station_mm: Option<f64>,
+    damping_percent: Option<f64>,
 ) -> PyResult<Answer> {
     let contact_force = contact_force_n.unwrap_or_else(paper_contact_force);
     if !(contact_force.is_finite() && contact_force >= 0.0) {
         let expected = "a force in N, 0 or more";
         return Err(wrong(py, "contact_force_n", contact_force.to_string(), expected.into()));
+    }
+    if let Some(percent) = damping_percent.filter(|percent| !(*percent > 0.0 && *percent < 100.0)) {
+        return Err(wrong(py, "damping_percent", percent.to_string(), "above 0 and below 100".into()));
     }
     let options = ComplianceOptions {
         mode: choice(py, "mode", mode, &[("fea", Mode::Fea), ("calc", Mode::Calc)])?,
@@ -46,7 +50,7 @@ pub fn compliance(
         contact_force,
         load_station: load_station_mm.map(|mm| mm * MM),
         read_station: read_station_mm.map(|mm| mm * MM),
-        ..ComplianceOptions::default()
+        damping_ratio: damping_percent.map(|percent| 0.01 * percent),
     };
     let rod = rod.get().rod.clone();
     run(py, None, Progress::default(), |_| answer::compliance(rod, &options)).map(Answer)

@@ -98,7 +98,7 @@ def test_what_a_terminal_would_obey_is_escaped() -> None:
         rodcal.Rod.read(f"no{name}.toml")
     text = pathlib.Path("rods/5.toml").read_text().replace("5#", "\\u001b[31m\\u202e\\u009b")
     result = rodcal.compliance(rodcal.Rod.from_toml(text))
-    for shown in (str(caught.value), str(result), repr(result), result.headline, result.title):
+    for shown in (str(caught.value), str(result), repr(result), result.headline, result.title, result._repr_html_()):
         assert not any(mark in shown for mark in ("\x1b", "\u202e", "\x9b")), shown
 
 
@@ -240,3 +240,15 @@ def test_ctrl_c_ends_what_takes_long(what: str, tmp_path: pathlib.Path) -> None:
         process.send_signal(signal.SIGINT)
         assert process.wait(timeout=60) == 7
         assert time.monotonic() - start < 10
+
+
+def test_a_damping_gives_settling_times() -> None:
+    assert rodcal.compliance("rods/5.toml").settling_times_s is None
+    result = rodcal.compliance("rods/5.toml", damping_percent=1.0)
+    times, frequencies = result.settling_times_s, result.natural_frequencies_hz
+    assert times is not None and frequencies is not None
+    # to 2 % of the swing
+    assert np.allclose(times, -np.log(0.02) / (0.01 * 2 * np.pi * frequencies))
+    for wrong in (0.0, 100.0, float("nan")):
+        with pytest.raises(rodcal.InputError, match="damping_percent"):
+            rodcal.compliance("rods/5.toml", damping_percent=wrong)

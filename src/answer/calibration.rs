@@ -64,7 +64,8 @@ pub fn calibrate_held_out<'c>(
     // before all else: it explains the rest
     report.warnings.splice(0..0, lines);
     let files = calibrated_robot(campaign, &calibrated)?;
-    Ok((Answer { json, report, files, status: u8::from(!is_plausible) }, calibrated))
+    let answer = Answer { files, status: u8::from(!is_plausible), ..Answer::new(json, report) };
+    Ok((answer, calibrated))
 }
 
 /// Every mode of compensation that the campaign allows, and which differences are significant.

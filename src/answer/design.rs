@@ -1,6 +1,6 @@
 //! Which rods, poses and loads?
 
-use super::{Answer, provenance};
+use super::{Answer, LongList, provenance};
 use crate::calibration::Campaign;
 use crate::design::{
     Budget, DesignSpace, Found, MOST_RODS, PoseStep, PoseStudy, Searched, Source, Study, Wanted, Where,
@@ -70,6 +70,8 @@ pub fn design_rod(space: DesignSpace, found: Found, asked: &DesignRod<'_>) -> Re
         answer.report.headline += &format!(" {}", report::design::for_robot_headline(&found));
         answer.report.cards.extend(report::design::for_robot_card(&found));
     }
+    let count = study.found.front.len();
+    answer.long = Some(LongList::new("front", count, move |place| report::design::front_json(&study, place)));
     Ok(answer)
 }
 

@@ -4,6 +4,7 @@ use nalgebra::{Rotation3, Vector3};
 
 use super::element::{Profile, Shape, ahead};
 use crate::dual::{Number, about_y};
+use crate::parallel::checkpoint;
 
 /// A cantilever in space: node 0 is clamped, each further node hangs on the one before by one
 /// element.
@@ -100,6 +101,7 @@ impl<T: Number> Chain<T> {
         let shape = self.share(Shape::straight(profile, step).turned(&self.frame), Some(piece));
         let ahead = self.frame * ahead();
         for k in 0..count {
+            checkpoint();
             // products, not running sums: node k is as accurate as node 1
             let at = |steps: f64| position + ahead * (step * steps);
             let (reference, end) = (at(k as f64 + 0.5), at((k + 1) as f64));
@@ -135,6 +137,7 @@ impl<T: Number> Chain<T> {
             position + frame * (Vector3::new((a / 2.0).sin().powi(2) * 2.0, T::zero(), a.sin()) * radius)
         };
         for k in 0..count {
+            checkpoint();
             let (middle, end) = (step * (k as f64 + 0.5), step * (k + 1) as f64);
             let turn = frame * about_y(middle);
             let bulge = Some(turn * (local.mass_centre - rise));

@@ -12,6 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::chain::Chain;
 use super::response::{Carried, Load, Motion, Response};
 use crate::error::{Error, Result};
+use crate::parallel::checkpoint;
 use crate::spatial::cross;
 use crate::units::MM;
 
@@ -53,6 +54,7 @@ fn equilibrium(chain: &Chain, weight: &[Carried]) -> Result<()> {
     let moment_scale =
         weight.iter().fold(f64::MIN_POSITIVE, |scale, carried| scale.max(carried.first_moment.amax()));
     for (k, (node, carried)) in chain.nodes.iter().zip(weight).enumerate() {
+        checkpoint();
         let lever = node.position - root;
         let beyond = carried.first_moment + lever * carried.mass;
         let mass_error = (reaction.mass - mass - carried.mass).abs() / reaction.mass.max(f64::MIN_POSITIVE);
@@ -123,6 +125,7 @@ fn weight_work(
 ) -> Matrix3<f64> {
     let mut work = Matrix3::zeros();
     for (k, element) in chain.elements.iter().enumerate() {
+        checkpoint();
         let (shape, near, far) = (chain.shape(element), &chain.nodes[k], &chain.nodes[k + 1]);
         work += response.motion(k + 1, index).translation * far.mass;
         // the element as a rigid body on its near node: m (u + θ×d) …

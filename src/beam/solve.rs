@@ -12,6 +12,7 @@ use super::check;
 use super::element::Shape;
 use super::response::{Carried, Load, Motion, Response, Resultant};
 use crate::error::{Error, Result};
+use crate::parallel::checkpoint;
 use crate::spatial::cross;
 
 impl Chain {
@@ -59,6 +60,7 @@ impl Chain {
         carried.mass = self.nodes[self.end()].mass;
         all[self.end()] = carried;
         for k in (0..self.elements.len()).rev() {
+            checkpoint();
             let (near, far, element) = (&self.nodes[k], &self.nodes[k + 1], &self.elements[k]);
             let shape = self.shape(element);
             // φ_k = φ_{k+1} + m_element + m_node,  s_k = s_{k+1} + φ_{k+1}(p_{k+1} − p_k) +
@@ -78,6 +80,7 @@ impl Chain {
         let mut motions = Vec::with_capacity(self.nodes.len() * loads.len());
         motions.resize(loads.len(), still);
         for (k, element) in self.elements.iter().enumerate() {
+            checkpoint();
             let shape = self.shape(element);
             let (near, far) = (self.nodes[k].position, self.nodes[k + 1].position);
             for &load in loads {

@@ -7,8 +7,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Args;
-use rodcal::answer::Answer;
-use rodcal::delimited::{is_obeyed, visible, visible_lines};
+use rodcal::answer::{Answer, LongList, write_json};
+use rodcal::delimited::{visible, visible_lines};
 use rodcal::files::{self, Existing, Staged};
 use rodcal::report::{Report, text};
 use rodcal::{Error, Result};
@@ -72,6 +72,8 @@ pub const APPLIED: &str = "reports/diagnosed";
 pub struct Outcome {
     /// For `--json`.
     pub json: Value,
+    /// The list of it that may be too long to be held.
+    pub long: Option<LongList>,
     /// For people; `None` prints `text` as it is and writes no report.
     pub report: Option<Report>,
     /// Instead of the report's own words on stdout.
@@ -94,8 +96,8 @@ pub struct Outcome {
 pub type Commit = Box<dyn FnOnce() -> Result<()>>;
 
 impl From<Answer> for Outcome {
-    fn from(Answer { json, report, files, status, .. }: Answer) -> Self {
-        Outcome { files, status, ..Outcome::new(json, report) }
+    fn from(Answer { json, long, report, files, status, .. }: Answer) -> Self {
+        Outcome { long, files, status, ..Outcome::new(json, report) }
     }
 }
 
@@ -104,6 +106,7 @@ impl Outcome {
     pub fn new(json: Value, report: Report) -> Self {
         Outcome {
             json,
+            long: None,
             report: Some(report),
             text: None,
             default_directory: None,
@@ -135,6 +138,7 @@ impl Outcome {
 pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<ExitCode> {
     let Outcome {
         mut json,
+        long,
         mut report,
         text,
         default_directory,
@@ -187,7 +191,9 @@ pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<
         }
         json["report"] = directory.join(PAGE).display().to_string().into();
         files.extend(more);
-        files.push((RESULT.into(), pretty(&json).into_bytes()));
+        let mut result = Vec::new();
+        write_json(&json, long.as_ref(), &mut result).map_err(unwritable(RESULT))?;
+        files.push((RESULT.into(), result));
         files::check_apart(&inputs, directory, &files, options.existing())?;
         staged = Some(Staged::new(directory, &files, options.existing())?);
         written.extend(files.iter().map(|(name, content)| (directory.join(name), content.len())));
@@ -200,22 +206,23 @@ pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<
     for warning in warnings.iter().filter(|_| !options.quiet) {
         say(&coloured("warning:", YELLOW), warning);
     }
-    let mut words = match (options.json, text, &report) {
-        (true, ..) => pretty(&json),
-        (false, Some(text), _) => text,
-        (false, None, Some(report)) => text::text_within(report, width()),
-        (false, None, None) => String::new(),
+    let mut words = match (text, &report) {
+        (_, _) if options.json => String::new(),
+        (Some(text), _) => text,
+        (None, Some(report)) => text::text_within(report, width()),
+        (None, None) => String::new(),
     };
     if let (false, Some(directory), Some(_)) = (options.json, &directory, &report) {
         words += &format!("\nreport: {}\n", directory.join(PAGE).display());
     }
-    let words = if options.json { escaped_json(&words).into() } else { visible_lines(&words) };
-    let mut stdout = std::io::stdout();
-    match stdout.write_all(words.as_bytes()).and_then(|()| stdout.flush()) {
+    let mut stdout = std::io::BufWriter::new(std::io::stdout().lock());
+    let said = match options.json {
+        true => write_json(&json, long.as_ref(), &mut stdout),
+        false => stdout.write_all(visible_lines(&words).as_bytes()),
+    };
+    match said.and_then(|()| stdout.flush()) {
         // `rodcal … | head` closes the pipe early and means no harm
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
-            return Err(Error::File { path: "stdout".into(), action: "write", source: e });
-        }
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => return Err(unwritable("stdout")(e)),
         _ => {}
     }
     staged.map_or(Ok(()), Staged::commit)?;
@@ -226,16 +233,9 @@ pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<
     Ok(ExitCode::from(status))
 }
 
-/// JSON with everything escaped that a terminal would obey; what is read from it is the same.
-fn escaped_json(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
-        match is_obeyed(c) && c != '\n' {
-            true => c.encode_utf16(&mut [0; 2]).iter().for_each(|unit| escaped += &format!("\\u{unit:04x}")),
-            false => escaped.push(c),
-        }
-    }
-    escaped
+/// The error of what cannot be written to `path`.
+fn unwritable(path: &str) -> impl Fn(std::io::Error) -> Error {
+    move |source| Error::File { path: path.into(), action: "write", source }
 }
 
 /// Refuses what cannot be delivered, before anything is calculated; the report goes to `directory`.
@@ -309,8 +309,4 @@ fn width() -> usize {
     let seen = || terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
     // what is narrower is not a terminal that anybody reads
     stated.or_else(seen).unwrap_or(100).max(20)
-}
-
-fn pretty(json: &Value) -> String {
-    format!("{json:#}\n")
 }

@@ -54,7 +54,7 @@ impl Predict {
         let poses =
             robot.poses_from_csv(&self.poses.display().to_string(), &files::read_text(&self.poses)?)?;
         let tool = self.tool.map(|xyz| xyz.map(|x| x * MM).into());
-        let (mut answer, _) = answer::predict(&robot, tool, poses, self.aligned)?;
+        let mut answer = answer::predict(&robot, tool, poses, self.aligned)?;
         answer.report.provenance = vec![
             ("model".into(), name),
             ("poses".into(), self.poses.display().to_string()),

@@ -30,6 +30,7 @@ use nalgebra::DMatrix;
 use crate::inference::columns::table::Table;
 use crate::inference::{Candidate, ForwardModel};
 use crate::linalg::transposed_product;
+use crate::parallel::checkpoint;
 
 /// Share of a column that is not zero from which on it is stored whole.
 const DENSE: f64 = 0.5;
@@ -123,6 +124,7 @@ impl Columns {
 
     /// Of one candidate, `rows` of the data or all of them.
     pub fn dense(&self, candidate: usize, rows: Option<&[usize]>) -> DMatrix<f64> {
+        checkpoint();
         let own = self.own(candidate);
         let mut dense = DMatrix::zeros(self.data, own.len());
         for (column, mut dense) in own.iter().zip(dense.column_iter_mut()) {

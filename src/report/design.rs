@@ -23,11 +23,9 @@ use crate::design::{Design, Figure, Figures, Goal, Impossible, Limit, Shown, Stu
 use crate::rod::NominalNumber;
 use crate::units::significant;
 
-/// The JSON of `rodcal design rod --json`.
+/// The JSON of `rodcal design rod --json`, all but the front ([`front_json`]).
 pub fn json(study: &Study) -> Value {
     let found = &study.found;
-    let front: Vec<Value> =
-        found.front.iter().enumerate().map(|(place, design)| front_json(study, place, design)).collect();
     let mut because = Map::new();
     for (limit, count) in study.space.limits.iter().zip(&found.broken) {
         because.insert(limit.key.into(), (*count).into());
@@ -49,7 +47,7 @@ pub fn json(study: &Study) -> Value {
         "evaluated": found.evaluated,
         "feasible": found.feasible,
         "objectives": study.space.goals.iter().map(goal_json).collect::<Vec<_>>(),
-        "front": front,
+        "front": Value::Null,
         "infeasible_because": because,
         "relax": relaxed.collect::<Vec<_>>(),
         "nearest": nearest_json(study),
@@ -88,7 +86,9 @@ fn goal_json(goal: &Goal) -> Value {
     json!({ if goal.is_maximised { "maximise" } else { "minimise" }: goal.figure.key() })
 }
 
-fn front_json(study: &Study, place: usize, design: &Design) -> Value {
+/// A design of the front in the JSON.
+pub fn front_json(study: &Study, place: usize) -> Value {
+    let design = &study.found.front[place];
     let mut object = Map::new();
     object.insert("rod".into(), rod_json(study, design.index));
     object.append(&mut figures_json(design));

@@ -243,11 +243,15 @@ const FEW_ROWS: usize = 8;
 
 fn table_markup(beside: Beside, table: &Table, number: usize) -> Markup {
     let file = |page: &str, kind: &str| format!("{}.{kind}", file_name(page, "table", number, &table.name));
+    let where_else = match beside {
+        Beside::Files(_) => "the files below hold all",
+        Beside::Nothing => "they are not shown here",
+    };
     html! {
         details open[table.rows.len() <= FEW_ROWS && !table.is_folded] {
             summary { b { "Table " (number) } ". " (table.caption) }
             div {
-                (table.html(number))
+                (table.shortened(where_else).html(number))
                 @if let Beside::Files(page) = beside {
                     p.files { a href=(file(page, "csv")) { "CSV" } " · " a href=(file(page, "md")) { "Markdown" } }
                 }

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use super::table::{Column, Table};
 use super::{Block, Card, Report, Section, Tone, forecast};
 use crate::calibration::campaign::GroupName;
-use crate::delimited::cell;
+use crate::delimited::{cell, visible};
 use crate::design::{Known, Obstacle, PoseCriterion, PoseStudy, Source};
 use crate::robot::Motion;
 use crate::units::{DEG, MM, UM, significant};
@@ -102,7 +102,7 @@ fn rows<'s>(study: &'s PoseStudy) -> impl Iterator<Item = (Vec<String>, Vec<f64>
 pub fn files(study: &PoseStudy) -> Vec<(String, Vec<u8>)> {
     let mut text = format!(
         "# PLANNED for {}: {} poses by {}\n{}\n",
-        study.campaign.file.replace(['\n', '\r'], " "),
+        visible(&study.campaign.file),
         study.chosen.len(),
         study.wanted.criterion.name(),
         columns(study).join(",")

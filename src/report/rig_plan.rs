@@ -11,6 +11,7 @@ use super::scale::superscript;
 use super::table::{Column, Table};
 use super::{Block, Card, Report, Section, Tone};
 use crate::beam::{Load, Physics, RodModel};
+use crate::delimited::visible;
 use crate::diagnosis::rig::planned::{Bench, Distinguished, PlannedLoads, RigPlan};
 use crate::inference::LoadPlan;
 use crate::rod::Rod;
@@ -322,7 +323,7 @@ fn will_tell(plan: &RigPlan) -> Vec<Block> {
 pub fn template(plan: &RigPlan, rod: &Rod) -> String {
     let mut text = format!(
         "# Rod {}: offsets in the tool frame to be filled in (µm, from the unloaded, zeroed rod); blank: not measured\n",
-        rod.name
+        visible(&rod.name)
     );
     let is_timed = plan.measurements.iter().any(|one| one.loads.waits.iter().any(|wait| *wait > 0.0));
     let has_stations = plan

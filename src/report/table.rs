@@ -2,11 +2,13 @@
 
 mod within;
 
+use std::borrow::Cow;
+
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 
 use super::scale::typeset;
-use crate::delimited::guarded;
+use crate::delimited::{guarded, visible};
 use crate::error::{Error, Result};
 
 /// Columns and rows of finished cells. Numbers are written as in a program, "-1.5e-3"; what is for
@@ -26,6 +28,9 @@ pub struct Table {
     /// Folded on a page, however short it is.
     pub is_folded: bool,
 }
+
+/// So many rows stand on a page and on a terminal; files hold all of them.
+const MOST_ROWS: usize = 1000;
 
 /// One column of a table.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -115,19 +120,20 @@ impl Table {
     /// GitHub-flavoured Markdown.
     pub fn markdown(&self) -> String {
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-        let escape = |cell: &str| {
-            cell.replace('\\', "\\\\").replace('|', "\\|").replace('<', "&lt;").replace(['\n', '\r'], " ")
-        };
+        // a tag would be one, and a terminal would obey a control character
+        let plain =
+            |text: &str| visible(&text.replace('<', "&lt;").replace(['\n', '\r', '\t'], " ")).into_owned();
+        let escape = |cell: &str| plain(&cell.replace('\\', "\\\\").replace('|', "\\|"));
         let rule = |column: &Column| if column.align == Align::Left { ":--" } else { "--:" }.to_owned();
         let mut text =
-            if self.caption.is_empty() { String::new() } else { format!("**{}**\n\n", self.caption) };
+            if self.caption.is_empty() { String::new() } else { format!("**{}**\n\n", plain(&self.caption)) };
         text += &line(self.columns.iter().map(|c| escape(&c.heading())).collect());
         text += &line(self.columns.iter().map(rule).collect());
         for row in 0..self.rows.len() {
             text += &line((0..self.columns.len()).map(|i| escape(self.cell(row, i))).collect());
         }
         for note in &self.notes {
-            text += &format!("\n{note}\n");
+            text += &format!("\n{}\n", plain(note));
         }
         text
     }
@@ -148,6 +154,26 @@ impl Table {
         }
         let bytes = writer.into_inner().map_err(|e| failed(e.to_string()))?;
         String::from_utf8(bytes).map_err(|e| failed(e.to_string()))
+    }
+
+    /// As many rows as anybody reads, and a note that says how many more there are, and
+    /// `where_else`.
+    pub(super) fn shortened(&self, where_else: &str) -> Cow<'_, Table> {
+        let more = self.rows.len().saturating_sub(MOST_ROWS);
+        if more == 0 {
+            return Cow::Borrowed(self);
+        }
+        let mut notes = self.notes.clone();
+        let rows = if more == 1 { "row" } else { "rows" };
+        notes.push(format!("{} more {rows}: {where_else}.", typeset(&more.to_string())));
+        Cow::Owned(Table {
+            name: self.name.clone(),
+            caption: self.caption.clone(),
+            columns: self.columns.clone(),
+            rows: self.rows[..MOST_ROWS].to_vec(),
+            notes,
+            is_folded: self.is_folded,
+        })
     }
 
     /// A `<table>` with its notes; `number` goes before its caption.

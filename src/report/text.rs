@@ -32,7 +32,8 @@ pub fn text_within(report: &Report, width: usize) -> String {
 }
 
 fn table_text(table: &Table, width: usize) -> String {
-    let bare = Table { caption: String::new(), notes: Vec::new(), ..table.clone() };
+    let table = table.shortened("--json has them, and --out writes all into files");
+    let bare = Table { caption: String::new(), notes: Vec::new(), ..Table::clone(&table) };
     let notes: String = table.notes.iter().map(|note| hanging("  ", note, width)).collect();
     let caption =
         if table.caption.is_empty() { String::new() } else { wrapped_within(&table.caption, width) + "\n" };

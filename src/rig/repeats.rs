@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector};
 
 use super::sample::{Point, Sample};
 use crate::error::{Error, Result};
 use crate::least_squares::{self, Options};
 use crate::limits;
+use crate::parallel::checkpoint;
 use crate::statistics;
 use crate::units::UM;
 
@@ -77,6 +78,7 @@ impl Repeats {
         let place = places(samples);
         // what is left of one number per reading once its average over the repeats is taken off
         let centred = |value: &dyn Fn(&Sample) -> f64| {
+            checkpoint();
             let mut averages = vec![0.0; points.len()];
             for (sample, &k) in samples.iter().zip(&place) {
                 averages[k] += value(sample) / points[k].count;
@@ -177,23 +179,48 @@ fn within_trials(samples: &[Sample], place: &[usize], points: usize, deviations:
                 *along.entry(place[i]).or_default() += x;
                 share += x * deviations[i];
             }
-            for (&k, x) in &along {
+            let along: Vec<(usize, f64)> = along.into_iter().collect();
+            for &(k, x) in &along {
+                checkpoint();
                 product[k] -= x * share;
-                along.iter().for_each(|(&l, y)| gram[(k, l)] -= x * y);
+                let mut column = gram.column_mut(k);
+                along.iter().for_each(|&(l, y)| column[l] -= x * y);
             }
             square -= share * share;
             fitted += 1;
         }
     }
-    let eigen = SymmetricEigen::new(gram);
-    let most = eigen.eigenvalues.amax();
-    for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-        if *value > ROUNDING * most {
-            square -= vector.dot(&product).powi(2) / value;
-            fitted += 1;
-        }
-    }
+    let (explained, rank) = explained(&gram, &product, ROUNDING);
+    square -= explained;
+    fitted += rank;
     Squares { sum: square.max(0.0), dof: samples.len().saturating_sub(fitted) }
+}
+
+/// bᵀ·G⁺·b and the rank of a positive semidefinite G, for b in its range: Cholesky's triangle, the
+/// largest pivot first, to where a pivot is but `rounding` of the first. Column by column, for it
+/// may be asked to stop.
+fn explained(gram: &DMatrix<f64>, b: &DVector<f64>, rounding: f64) -> (f64, usize) {
+    let mut pivots = gram.diagonal();
+    let least = rounding * pivots.max();
+    let (mut triangle, mut rest) = (DMatrix::<f64>::zeros(gram.nrows(), gram.nrows()), b.clone());
+    let mut sum = 0.0;
+    for rank in 0..gram.nrows() {
+        checkpoint();
+        let largest = pivots.imax();
+        if pivots[largest] <= least {
+            return (sum, rank);
+        }
+        let root = pivots[largest].sqrt();
+        let known = triangle.columns(0, rank);
+        let column = (gram.column(largest) - known * known.row(largest).transpose()) / root;
+        let share = rest[largest] / root;
+        rest.axpy(-share, &column, 1.0);
+        pivots -= column.component_mul(&column);
+        pivots[largest] = 0.0;
+        triangle.set_column(rank, &column);
+        sum += share * share;
+    }
+    (sum, gram.nrows())
 }
 
 /// The decimal place of a micrometre that the offsets are rounded to, m; 0 where they show none.

@@ -18,6 +18,24 @@ fn assert_shown(answer: &Answer) {
     }
 }
 
+/// What a spreadsheet would calculate begins with `=`, `+`, `-` or `@` and is no number, no interval
+/// and no direction.
+fn assert_no_formula(name: &str, text: &str) {
+    let mut rows = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .from_reader(text.as_bytes());
+    for row in rows.records() {
+        for cell in row.unwrap_or_else(|error| panic!("{name}: {error}")).iter() {
+            let first = cell.split_whitespace().next().unwrap_or_default();
+            let is_number = first.trim_end_matches(['%', ',']).parse::<f64>().is_ok();
+            let is_harmless = is_number || cell == "-" || cell == "+" || ["-x", "-y", "-z"].contains(&first);
+            assert!(!cell.starts_with(['=', '+', '-', '@']) || is_harmless, "{name}: {cell}");
+        }
+    }
+}
+
 #[test]
 fn hostile_names_are_data_everywhere() {
     let sandbox = Sandbox::new();
@@ -106,15 +124,12 @@ fn hostile_names_are_data_everywhere() {
         let prefix = format!("out{k}/");
         for (name, bytes) in sandbox.listing().iter().filter(|(name, _)| name.starts_with(&prefix)) {
             let text = String::from_utf8_lossy(bytes);
-            if name.ends_with(".html") || name.ends_with(".svg") {
+            assert!(!text.contains(is_obeyed), "{line}: {name}: {text}");
+            if [".html", ".svg", ".md"].iter().any(|kind| name.ends_with(kind)) {
                 assert!(!text.contains("<script>alert") && !text.contains("<img src=x"), "{name}");
-                assert!(!text.contains('\u{1b}'), "{name}");
             }
             if name.ends_with(".csv") {
-                for line in text.lines().filter(|line| !line.starts_with('#')) {
-                    let is_formula = |cell: &str| cell.trim_start_matches('"').starts_with(['=', '@']);
-                    assert!(!line.split(',').any(is_formula), "{name}: {line}");
-                }
+                assert_no_formula(name, &text);
             }
         }
         assert!(k > 1 || answer.stdout.contains("onerror") || answer.stdout.len() > 100);

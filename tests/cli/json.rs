@@ -313,3 +313,28 @@ fn settling_times_are_those_of_the_damping_that_was_stated() {
     let unknown = sandbox.run("compliance rods/5.toml --json").json();
     assert!(unknown["settling_times_s"].is_null());
 }
+
+/// A page of a million rows is none, and their JSON would need two gigabytes if it were held.
+#[test]
+fn what_is_long_is_whole_in_its_files_and_short_elsewhere() {
+    let sandbox = Sandbox::new();
+    let mut poses = String::from("pose,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n");
+    for k in 0..1203 {
+        poses += &format!("p{k},{},10,80,5,6,7\n", 0.1 * f64::from(k));
+    }
+    sandbox.write("poses.csv", &poses);
+    let answer = sandbox.run("predict robots/tx90.toml poses.csv --out tips").succeeded();
+    let note = "203 more rows";
+    assert!(
+        answer.stdout.contains(note) && answer.stdout.contains("p999 ") && !answer.stdout.contains("p1000 ")
+    );
+    let page = sandbox.read("tips/index.html");
+    assert!(page.contains(note) && page.contains("p999<") && !page.contains("p1000<"));
+    assert_eq!(sandbox.read("tips/table-1-prediction.csv").lines().count(), 1204);
+    let result: Value = serde_json::from_str(&sandbox.read("tips/result.json")).unwrap();
+    let printed = sandbox.run("predict robots/tx90.toml poses.csv --json").json();
+    assert_eq!(result["poses"].as_array().unwrap().len(), 1203);
+    assert_eq!(result["poses"], printed["poses"]);
+    // in its place, not at the end
+    assert!(printed.as_object().unwrap().keys().position(|key| key == "poses") < Some(5));
+}

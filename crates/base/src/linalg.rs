@@ -19,6 +19,7 @@ use nalgebra::{DMatrix, DVector};
 pub use self::inverse_root::{InverseRoot, positive_definite_inverse};
 
 use crate::error::{Error, Result};
+use crate::parallel::checkpoint;
 
 /// Singular value decomposition A = U·diag(σ)·Vᵀ of an m × n matrix, thin: k = min(m, n) columns in
 /// U and V.
@@ -64,6 +65,7 @@ pub fn rounding_tolerance(a: &DMatrix<f64>) -> f64 {
 /// # Errors
 /// [`Error::Numerical`] where an entry is not finite or the iteration does not converge.
 pub fn thin_svd(a: &DMatrix<f64>) -> Result<Svd> {
+    checkpoint();
     require_finite("the singular value decomposition", a)?;
     let (m, n) = a.shape();
     let k = m.min(n);
@@ -117,6 +119,7 @@ pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>) -> Result<DVector<f64>>
 
 /// AᵀB.
 pub fn transposed_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    checkpoint();
     let mut product = DMatrix::zeros(a.ncols(), b.ncols());
     let target = MatMut::from_column_major_slice_mut(product.as_mut_slice(), a.ncols(), b.ncols());
     matmul(target, Accum::Replace, view(a).transpose(), view(b), 1.0, Par::Seq);
@@ -204,6 +207,7 @@ impl RowReduction {
         let capacity = self.store.nrows();
         let mut done = 0;
         while done < count {
+            checkpoint();
             if self.filled == capacity {
                 self.reduce();
             }

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use super::{Campaign, Group, GroupName, Recording, Refit, Targets};
 use crate::delimited::cell;
 use crate::robot::{Motion, Robot};
-use crate::toml_text::comments;
+use crate::toml_text::{comments, quoted};
 use crate::units::{DEG, MM, UM};
 
 /// Names of the files that a written campaign refers to.
@@ -132,7 +132,7 @@ impl Recording {
     /// The CSV file of a recording with `robot`, with comments above it: each position in its
     /// clamp's frame and at its own station, as it was measured.
     pub fn to_csv(&self, robot: &Robot, above: &[String]) -> String {
-        let mut text: String = above.iter().map(|line| format!("# {line}\n")).collect();
+        let mut text = comments(above);
         let has_clamps = self.groups.iter().any(|group| !group.name.is_tracked());
         let has_points = matches!(self.targets, Targets::Points(_));
         let has_stations = self.stations.iter().any(|station| !station.name.is_empty());
@@ -202,9 +202,4 @@ fn number(value: f64) -> String {
 fn three(vector: &Vector3<f64>, unit: f64) -> String {
     let [x, y, z] = [vector.x, vector.y, vector.z].map(|x| number(x / unit));
     format!("[{x}, {y}, {z}]")
-}
-
-/// A TOML string.
-fn quoted(text: &str) -> String {
-    toml::Value::from(text).to_string()
 }

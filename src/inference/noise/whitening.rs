@@ -25,6 +25,7 @@ use crate::inference::noise::correlated_noise::Filter;
 use crate::inference::noise::correlation::{correlation, length};
 use crate::inference::noise::shared_ratio::shared_ratio;
 use crate::linalg::{least_squares, thin_svd, transposed_product};
+use crate::parallel::checkpoint;
 
 /// Length, relative to what it was, below which a nuisance column is a combination of the others.
 const DEPENDENT: f64 = 1e-9;
@@ -161,6 +162,7 @@ impl Whitening {
 
     /// Wᵀv of every column v, W what whitens without projecting: (W·c)ᵀv = cᵀ(Wᵀv).
     pub fn transposed(&self, vectors: &DMatrix<f64>) -> DMatrix<f64> {
+        checkpoint();
         let mut result = vectors.clone();
         for mut column in result.column_iter_mut() {
             self.transpose(column.as_mut_slice());
@@ -314,6 +316,7 @@ impl Whitening {
     }
 
     fn whiten(&self, v: &mut [f64]) {
+        checkpoint();
         v.iter_mut().zip(&self.roots).for_each(|(v, root)| *v *= root);
         if let Some(filter) = &self.correlated_noise {
             filter.whiten(v);
@@ -353,6 +356,7 @@ impl Whitening {
 
     /// Takes s·(a·v)/|a|²·a off.
     fn take_shared(&self, v: &mut [f64]) {
+        checkpoint();
         let (slow, _) = self.along();
         for (rows, share) in &self.groups {
             let sum = rows.iter().map(|&row| v[row]).sum::<f64>();
@@ -366,6 +370,7 @@ impl Whitening {
     }
 
     fn project(&self, v: &mut DVector<f64>) {
+        checkpoint();
         for b in &self.basis {
             v.axpy(-b.dot(v), b, 1.0);
         }

@@ -9,6 +9,7 @@ use crate::inference::score::Moments;
 use crate::inference::search::Search;
 use crate::inference::{ForwardModel, Hypothesis, Term};
 use crate::linalg::transposed_product;
+use crate::parallel::checkpoint;
 
 /// For some candidates, the inner products of their columns with those of a hypothesis (rows), and
 /// with a residual.
@@ -50,6 +51,7 @@ impl Search<'_> {
     /// Residual and columns of the effects of a hypothesis at their values, linear about the
     /// neutral ones and whitened. Estimates are in sizes from the neutral values.
     fn linear(&self, terms: &[Term]) -> (DVector<f64>, DMatrix<f64>) {
+        checkpoint();
         let own: Vec<DMatrix<f64>> =
             (0..terms.len()).map(|position| self.model.columns(terms, position)).collect();
         let count: usize = own.iter().map(DMatrix::ncols).sum();
@@ -151,6 +153,7 @@ impl Search<'_> {
 
     /// Of a residual and the columns of the effects, the background before them.
     fn moments_of(&self, r: &DVector<f64>, own: &DMatrix<f64>, terms: &[Term]) -> Moments {
+        checkpoint();
         let (background, of_background) = &self.background;
         let (first, count) = (background.ncols(), own.ncols());
         let cross = transposed_product(background, own);

@@ -19,6 +19,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::tree::{Kind, Tree};
 use super::xml::{Source, child};
 use super::{BASE_LINK, TIP_LINK, Zero};
+use crate::delimited::is_obeyed;
 use crate::error::{Error, Result};
 use crate::robot::Robot;
 use crate::spatial::{Pose, turned_about_z};
@@ -199,7 +200,7 @@ fn comment(lines: &[String]) -> String {
         .map(|line| {
             let plain: String = line
                 .chars()
-                .map(|c| if c.is_control() || ('\u{fffe}'..='\u{ffff}').contains(&c) { ' ' } else { c })
+                .map(|c| if is_obeyed(c) || ('\u{fffe}'..='\u{ffff}').contains(&c) { ' ' } else { c })
                 .collect();
             format!("  {}\n", plain.replace("--", "- -").replace("--", "- -"))
         })

@@ -44,9 +44,13 @@ pub fn guarded(text: &str) -> Cow<'_, str> {
 pub(super) fn is_formula(text: &str) -> bool {
     let is_number = |word: &str| word.trim_end_matches(['%', ',']).parse::<f64>().is_ok();
     let is_word = |word: &str| word == "±" || word == "…" || word.chars().all(char::is_alphabetic);
+    // a sign alone calculates nothing
+    if matches!(text, "-" | "+") {
+        return false;
+    }
     let mut words = text.split_whitespace();
     let begins = words.next().is_some_and(|first| match first {
-        "-" | "+" | "-x" | "-y" | "-z" | "+x" | "+y" | "+z" => false,
+        "-x" | "-y" | "-z" | "+x" | "+y" | "+z" => false,
         first => first.starts_with(['=', '+', '-', '@']) && !is_number(first),
     });
     let begins_as_number = text.trim_start().starts_with(['+', '-']);
@@ -116,8 +120,16 @@ mod tests {
 
     #[test]
     fn a_cell_is_no_formula() {
-        for text in ["=1+1", "+cmd|' /C calc'!A0", "-1+1", "@SUM(1)", "=HYPERLINK(\"x\")", " =1", "-2 +A1(3)"]
-        {
+        for text in [
+            "=1+1",
+            "+cmd|' /C calc'!A0",
+            "-1+1",
+            "@SUM(1)",
+            "=HYPERLINK(\"x\")",
+            " =1",
+            "-2 +A1(3)",
+            "+ axial",
+        ] {
             assert!(cell(text).trim_start_matches('"').starts_with('\''), "{text}: {}", cell(text));
             let table = Table::parse("f", &format!("a\n{}\n", cell(text)), |_| false).unwrap();
             assert_eq!(table.rows().next().unwrap().text("a"), Some(text.trim()));

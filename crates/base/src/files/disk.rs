@@ -99,6 +99,9 @@ pub mod faults {
     use std::cell::Cell;
     use std::io::Error;
 
+    /// Whether this build reads a fault from the environment.
+    pub const IN_ENVIRONMENT: bool = cfg!(debug_assertions);
+
     /// What goes wrong.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Fault {
@@ -151,7 +154,7 @@ pub mod faults {
     }
 
     fn of_environment() -> Option<Fault> {
-        if !cfg!(debug_assertions) {
+        if !IN_ENVIRONMENT {
             return None;
         }
         let stated = std::env::var("RODCAL_FAULT").ok()?;

@@ -14,6 +14,7 @@ use crate::inference::{
     Candidate, Description, Estimate, Finding, FindingPart, ForwardModel, Hypothesis, Kind, Location, Step,
     Term,
 };
+use crate::parallel::checkpoint;
 
 impl ForwardModel for RigModel {
     fn candidates(&self) -> &[Candidate] {
@@ -21,6 +22,7 @@ impl ForwardModel for RigModel {
     }
 
     fn response(&self, terms: &[Term]) -> DVector<f64> {
+        checkpoint();
         self.changed(&self.state(terms))
     }
 
@@ -40,6 +42,7 @@ impl ForwardModel for RigModel {
     }
 
     fn columns(&self, terms: &[Term], position: usize) -> DMatrix<f64> {
+        checkpoint();
         let derivative = Derivative::new(self, terms, position);
         let count = self.actions[terms[position].candidate].len();
         let mut columns = DMatrix::zeros(self.data.len(), count);

@@ -7,6 +7,7 @@ use super::{Body, RigModel};
 use crate::diagnosis::rig::mechanics::state::State;
 use crate::diagnosis::rig::mechanics::structure::{Parts, Structure};
 use crate::diagnosis::rig::recording::datum::Datum;
+use crate::parallel::checkpoint;
 
 impl RigModel {
     /// How far the rod deflects at each datum, m: the prediction, or the reading's share in a line
@@ -142,6 +143,7 @@ impl RigModel {
     }
 
     pub(in crate::diagnosis::rig) fn changed(&self, state: &State<'_>) -> DVector<f64> {
+        checkpoint();
         let mut change = DVector::zeros(self.data.len());
         for (action, value) in &state.additions {
             action.add_to(change.as_mut_slice(), *value);

@@ -43,7 +43,8 @@ fn errors(subject: &Subject) -> Card {
     match errors.held_out {
         _ if subject.diagnosis.findings.is_empty() => {
             // what the headline has per coordinate is here of the whole distance
-            let statistic = if errors.averaged.is_empty() { "root mean square" } else { "mean distance of the tip" };
+            let statistic =
+                if errors.averaged.is_empty() { "root mean square" } else { "mean distance of the tip" };
             Card::new("Residual", format!("{} µm", um(errors.before)), statistic)
         }
         Some((before, after)) => {

@@ -38,7 +38,8 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
     let side = if memory == Memory::Side { ("±", r"\pm ") } else { ("", "") };
     let latex_of = |symbol: &str| {
         let greek = [("Δ", r"\Delta "), ("θ", r"\theta"), ("φ", r"\varphi"), ("τ", r"\tau")];
-        let symbol = greek.iter().fold(symbol.to_owned(), |symbol, (letter, command)| symbol.replace(letter, command));
+        let symbol =
+            greek.iter().fold(symbol.to_owned(), |symbol, (letter, command)| symbol.replace(letter, command));
         symbol.replace('\'', r"^{\prime}")
     };
     let x = match memory {

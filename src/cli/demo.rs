@@ -2,14 +2,16 @@
 
 use std::path::PathBuf;
 
+use rodcal::answer;
 use rodcal::beam::Physics;
 use rodcal::calibration::{self, Campaign, CompareOptions};
 use rodcal::compliance::{DEFAULT_ELEMENTS, Mode, Study, paper_contact_force};
+use rodcal::diagnosis::calibration::Neighbours;
 use rodcal::report::text::wrapped;
 use rodcal::report::{self, Block, Card, PageLink, Report, Section};
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
-use rodcal::{Error, Result, rig};
+use rodcal::{Error, Result, files, rig};
 use serde_json::{Value, json};
 
 use super::embedded::{CAMPAIGN, CAMPAIGN_FILE, LOAD_CELL, LOAD_CELL_FILE, RODS, named_by_the_campaign};
@@ -48,7 +50,7 @@ pub fn run() -> Result<Outcome> {
         title: title.into(),
         ..Report::default()
     });
-    let (mut results, mut words, mut warnings) = (Vec::new(), String::new(), vec![RECONSTRUCTED.to_owned()]);
+    let (mut results, mut words, mut fitted) = (Vec::new(), String::new(), String::new());
     let mut provenance: Vec<(String, String)> = Vec::new();
     for example in &RODS {
         let rod = Rod::from_toml(example.rod_file, example.rod)?;
@@ -66,10 +68,12 @@ pub fn run() -> Result<Outcome> {
         }));
         provenance.push(("rod file".into(), example.rod_file.into()));
         provenance.push(("readings".into(), format!("{} (reconstructed)", example.readings_file)));
+        let page = if rod.name == SHOWN { &mut rod_page } else { &mut why_page };
         for part in [&rod_report, &rig_report] {
-            warnings.extend(part.warnings.iter().map(|warning| format!("rod {}: {warning}", rod.name)));
+            page.warnings.extend(part.warnings.iter().map(|warning| format!("rod {}: {warning}", rod.name)));
         }
         if rod.name == SHOWN {
+            fitted.clone_from(&rig_report.headline);
             rod_page.headline = format!("{} {}", rod_report.headline, rig_report.headline);
             rod_page.cards = rod_report.cards.into_iter().chain(rig_report.cards).collect();
             rod_page.sections = shown(rod_report.sections, &["shape-force"]);
@@ -83,37 +87,42 @@ pub fn run() -> Result<Outcome> {
     let fit = rig::fit(&readings, None, &rig::Options::default())?;
     let cell_report = report::rig::report(&fit, &readings, None);
     words += &wrapped(&format!("Load cell (NIST): {}", cell_report.headline));
-    warnings.extend(cell_report.warnings.into_iter().map(|warning| format!("load cell: {warning}")));
+    why_page.warnings.extend(cell_report.warnings.into_iter().map(|warning| format!("load cell: {warning}")));
     provenance.push(("readings".into(), format!("{LOAD_CELL_FILE} (NIST StRD, Pontius)")));
     add(&mut why_page, "Load cell (NIST)", diagnosed(&readings, None)?);
     words += &format!("\n{}", wrapped(&why_page.headline));
 
-    let (robot_report, calibrated, compared) = robot()?;
-    words += &format!("\n{}", wrapped(&robot_report.headline));
-    words += &format!("\n{}", wrapped(RECONSTRUCTED));
-    warnings.extend(robot_report.warnings.into_iter().map(|warning| format!("TX90: {warning}")));
-    robot_page.headline = robot_report.headline;
+    let Robot { report: robot_report, calibrated, compared, without, diagnosis } = robot()?;
+    words +=
+        &format!("\n{}", wrapped(&format!("{} {without} {}", robot_report.headline, diagnosis.headline)));
+    robot_page.warnings.extend(robot_report.warnings.into_iter().map(|warning| format!("TX90: {warning}")));
+    robot_page.headline = format!("{} {without}", robot_report.headline);
     robot_page.cards = robot_report.cards;
     robot_page.sections =
         shown(robot_report.sections, &["error-distribution", "error-over-workspace", "mode-comparison"]);
+    add(&mut robot_page, "Diagnosis", diagnosis);
     provenance.push(("campaign".into(), format!("{CAMPAIGN_FILE} (simulated)")));
     provenance.push(("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into()));
 
-    let pages = [rod_page, robot_page, why_page];
+    let mut pages = vec![rod_page, robot_page, why_page];
+    for page in &mut pages {
+        page.provenance.clone_from(&provenance);
+    }
+    let cards: Vec<Card> =
+        pages.iter().zip(IN_SHORT).filter_map(|(page, k)| page.cards.get(k).cloned()).collect();
+    let short = |card: &Card| format!("{}: {}.", card.label, card.value);
+    let mut said = vec![fitted];
+    said.extend(cards.get(1).map(|card| format!("TX90: {} {without}", short(card).to_lowercase())));
+    said.extend(cards.get(2).map(short));
     let index = Report {
         pages: links(),
         title: "rodcal demo".into(),
-        headline: "A bent measuring rod, a robot that it calibrates, and what the readings say that the model does not."
-            .into(),
-        cards: pages.iter().zip(IN_SHORT).filter_map(|(page, k)| page.cards.get(k).cloned()).collect(),
-        warnings,
+        headline: said.join(" "),
+        cards,
+        warnings: vec![RECONSTRUCTED.to_owned()],
         provenance,
         ..Report::default()
     };
-    let mut files = Vec::new();
-    for page in &pages {
-        files.extend(page.files()?);
-    }
     let json = json!({
         "rods": results,
         "load_cell": report::rig::json(&fit, &readings, None),
@@ -123,9 +132,17 @@ pub fn run() -> Result<Outcome> {
     Ok(Outcome {
         text: Some(words),
         default_directory: Some(PathBuf::from(DIRECTORY)),
-        files,
+        pages,
+        inputs: embedded(),
         ..Outcome::new(json, index)
     })
+}
+
+/// What the program carries inside, with its SHA-256.
+fn embedded() -> Vec<(String, String)> {
+    let of_rods = RODS.iter().flat_map(|e| [(e.rod_file, e.rod), (e.readings_file, e.readings)]);
+    let others = [(LOAD_CELL_FILE, LOAD_CELL), (CAMPAIGN_FILE, CAMPAIGN)];
+    of_rods.chain(others).map(|(file, text)| (file.into(), files::sha256(text.as_bytes()))).collect()
 }
 
 /// All pages, as each of them links them.
@@ -180,9 +197,18 @@ fn diagnosed(readings: &Readings, rod: Option<&Rod>) -> Result<Report> {
     Ok(report::diagnosis::rig::report(&found, found.correction()?.as_ref()))
 }
 
-/// The campaign inside the program, calibrated in its default mode, and all modes compared: report
-/// and both JSONs.
-fn robot() -> Result<(Report, Value, Value)> {
+/// The campaign inside the program.
+struct Robot {
+    report: Report,
+    calibrated: Value,
+    compared: Value,
+    /// What the error is where nothing is compensated, and whether that matters.
+    without: String,
+    diagnosis: Report,
+}
+
+/// It is calibrated in its default mode, all modes are compared, and its residuals diagnosed.
+fn robot() -> Result<Robot> {
     let open = |name: &str| {
         named_by_the_campaign(name).map(str::to_owned).ok_or_else(|| Error::File {
             path: name.into(),
@@ -192,11 +218,16 @@ fn robot() -> Result<(Report, Value, Value)> {
     };
     let campaign = Campaign::from_texts(CAMPAIGN_FILE, CAMPAIGN, &open)?;
     let options = CompareOptions::default().with_draws(DRAWS);
-    let calibrated =
-        calibration::calibrate(&campaign, calibration::default_mode(&campaign), &options.calibration)?;
+    let mode = calibration::default_mode(&campaign);
+    let calibrated = calibration::calibrate(&campaign, mode, &options.calibration)?;
     let compared = calibration::compare(&campaign, &options, &|_| {})?;
     let mut report = report::calibration::report(&campaign, &calibrated, None);
     report.sections.extend(report::comparison::sections(&campaign, &compared));
-    let json = report::calibration::json(&campaign, &calibrated, None);
-    Ok((report, json, report::comparison::json(&campaign, &compared)))
+    Ok(Robot {
+        report,
+        calibrated: report::calibration::json(&campaign, &calibrated, None),
+        compared: report::comparison::json(&campaign, &compared),
+        without: report::comparison::without_compensation(&compared, mode).unwrap_or_default(),
+        diagnosis: answer::diagnose_calibration(&campaign, mode, &Neighbours::default(), None)?.report,
+    })
 }

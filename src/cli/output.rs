@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use clap::Args;
+use clap::{Args, CommandFactory};
 use rodcal::answer::{Answer, LongList, write_json};
 use rodcal::delimited::{visible, visible_lines};
 use rodcal::files::{self, Existing, Staged};
@@ -63,7 +63,8 @@ impl Options {
 /// What every report has, whatever it is of.
 const PAGE: &str = "index.html";
 
-const OUTPUT: &str = "Output";
+/// The heading of options that every command has.
+pub const OUTPUT: &str = "Output";
 
 /// Where what was found is applied without --out.
 pub const APPLIED: &str = "reports/diagnosed";
@@ -76,6 +77,11 @@ pub struct Outcome {
     pub long: Option<LongList>,
     /// For people; `None` prints `text` as it is and writes no report.
     pub report: Option<Report>,
+    /// More pages of the report, beside its own.
+    pub pages: Vec<Report>,
+    /// Files inside the program that it was made from, with the SHA-256 of their content, and
+    /// those that the command line does not name.
+    pub inputs: Vec<(String, String)>,
     /// Instead of the report's own words on stdout.
     pub text: Option<String>,
     /// Where the report goes without `--out`.
@@ -108,6 +114,8 @@ impl Outcome {
             json,
             long: None,
             report: Some(report),
+            pages: Vec::new(),
+            inputs: Vec::new(),
             text: None,
             default_directory: None,
             files: Vec::new(),
@@ -140,6 +148,8 @@ pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<
         mut json,
         long,
         mut report,
+        mut pages,
+        inputs: not_named,
         text,
         default_directory,
         files: more,
@@ -156,7 +166,7 @@ pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<
     };
     let mut written = Vec::new();
     if report.is_none() && options.out.is_some() && !options.quiet {
-        say(&coloured("warning:", YELLOW), "this command writes no report: --out has no effect");
+        warn("this command writes no report: --out has no effect");
     }
     let mut inputs = Vec::new();
     let mut staged = None;
@@ -168,9 +178,11 @@ pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<
             report.warnings.push("--stamp has no effect without --out".into());
         }
         // the same words on stderr, on the page and in the JSON
-        json["warnings"] = report.warnings.as_slice().into();
+        let all = || std::iter::once(&*report).chain(&pages).flat_map(|page| page.warnings.clone());
+        json["warnings"] = all().collect::<Vec<String>>().into();
         if directory.is_some() || options.verbose {
-            let mut provenance = Provenance::of(std::env::args().skip(1));
+            let mut provenance =
+                Provenance::of(std::env::args().skip(1)).with_options(&super::Arguments::command());
             provenance.seed = seed;
             provenance.time = options.stamp.then(stamp::time).transpose()?;
             for (file, hash) in &provenance.inputs {
@@ -178,7 +190,11 @@ pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<
             }
             if directory.is_some() {
                 inputs.extend(provenance.inputs.iter().cloned());
-                report.provenance.extend(provenance.lines());
+                provenance.inputs.extend(not_named);
+                for page in std::iter::once(&mut *report).chain(&mut pages) {
+                    page.provenance.extend(provenance.lines());
+                    page.result_file = RESULT.into();
+                }
                 json["provenance"] = provenance.json();
             }
         }
@@ -186,6 +202,9 @@ pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<
     if let (Some(report), Some(directory)) = (&report, &directory) {
         // everything is rendered before anything is written
         let mut files = report.files()?;
+        for page in &pages {
+            files.extend(page.files()?);
+        }
         if options.png {
             files.extend(pngs(&files)?);
         }
@@ -204,7 +223,7 @@ pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<
     }
     let warnings = report.as_ref().map_or(&warnings, |report| &report.warnings);
     for warning in warnings.iter().filter(|_| !options.quiet) {
-        say(&coloured("warning:", YELLOW), warning);
+        warn(warning);
     }
     let mut words = match (text, &report) {
         (_, _) if options.json => String::new(),
@@ -299,12 +318,26 @@ pub fn say(word: &str, line: &str) {
     let _ = writeln!(std::io::stderr(), "{word}{space}{}", visible(line));
 }
 
-/// Columns of the terminal that stdout is, or as COLUMNS says; in a file or a pipe tables take what
-/// they need.
-fn width() -> usize {
-    if !std::io::stdout().is_terminal() {
-        return usize::MAX;
+/// A warning on stderr: on a terminal in lines that fit, in a file or a pipe one line.
+fn warn(warning: &str) {
+    let word = "warning:";
+    match std::io::stderr().is_terminal() {
+        true => {
+            let lines = text::hanging(&format!("{word} "), &visible(warning), columns());
+            let rest = lines.strip_prefix(word).unwrap_or(&lines);
+            let _ = write!(std::io::stderr(), "{}{rest}", coloured(word, YELLOW));
+        }
+        false => say(word, warning),
     }
+}
+
+/// Columns of the terminal that stdout is; in a file or a pipe tables take what they need.
+fn width() -> usize {
+    if std::io::stdout().is_terminal() { columns() } else { usize::MAX }
+}
+
+/// Columns of the terminal, or as COLUMNS says.
+fn columns() -> usize {
     let stated = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     let seen = || terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
     // what is narrower is not a terminal that anybody reads

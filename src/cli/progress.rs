@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 /// Whether bars are to be seen at all.
 static IS_QUIET: AtomicBool = AtomicBool::new(false);
@@ -21,6 +21,29 @@ fn target() -> ProgressDrawTarget {
     }
 }
 
+/// Draws a bar once a second from the second second on, also while no task gets done.
+fn tick(bar: &ProgressBar) {
+    if bar.is_hidden() {
+        return;
+    }
+    let bar = bar.downgrade();
+    std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_secs(1));
+        if let Some(bar) = bar.upgrade().filter(|bar| !bar.is_finished()) {
+            bar.enable_steady_tick(Duration::from_secs(1));
+        }
+    });
+}
+
+/// How long the rest takes, which nobody knows before a task is done; while there is a rest, it is
+/// not nothing.
+fn left(done: u64, estimate: Duration, elapsed: Duration) -> String {
+    match done {
+        0 => format!("{} so far", HumanDuration(elapsed)),
+        _ => format!("about {} left", HumanDuration(estimate.max(Duration::from_secs(1)))),
+    }
+}
+
 /// Counts finished tasks.
 pub struct Progress(ProgressBar);
 
@@ -29,10 +52,15 @@ impl Progress {
     /// terminal.
     pub fn new(what: &'static str, count: usize) -> Self {
         let bar = ProgressBar::with_draw_target(Some(count as u64), target());
-        if let Ok(style) = ProgressStyle::with_template("{msg} {bar:40} {pos}/{len}, {eta} left") {
-            bar.set_style(style);
+        if let Ok(style) = ProgressStyle::with_template("{msg} {bar:40} {pos}/{len}, {left}") {
+            let said = |state: &ProgressState, line: &mut dyn std::fmt::Write| {
+                // a line that cannot be written is none
+                let _ = line.write_str(&left(state.pos(), state.eta(), state.elapsed()));
+            };
+            bar.set_style(style.with_key("left", said));
         }
         bar.set_message(what);
+        tick(&bar);
         Progress(bar)
     }
 
@@ -43,6 +71,7 @@ impl Progress {
             bar.set_style(style);
         }
         bar.set_message(what);
+        tick(&bar);
         Progress(bar)
     }
 
@@ -64,5 +93,18 @@ impl Progress {
     /// Takes the bar away.
     pub fn finish(&self) {
         self.0.finish_and_clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_is_not_said_before_a_task_is_done_and_is_never_nothing() {
+        let seconds = Duration::from_secs;
+        assert_eq!(left(0, seconds(0), seconds(12)), "12 seconds so far");
+        assert_eq!(left(3, Duration::from_millis(20), seconds(12)), "about 1 second left");
+        assert_eq!(left(3, seconds(600), seconds(12)), "about 10 minutes left");
     }
 }

@@ -3,7 +3,12 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use clap::parser::ValueSource;
+use clap::{ArgAction, ArgMatches, Command};
 use rodcal::files;
+use serde_json::{Map, Value, json};
+
+use super::output;
 
 /// The result as JSON, in every directory of a report.
 pub const RESULT: &str = "result.json";
@@ -17,6 +22,9 @@ const WITHOUT_EFFECT: [&str; 5] = ["--force", "-q", "--quiet", "-v", "--verbose"
 pub struct Provenance {
     /// The command as it was typed, but for where its report goes.
     pub command: String,
+    /// Every option of the command by its name, at its default too: what it was set to, whether
+    /// that is its default; `Null` where it was left out and has none.
+    pub options: Vec<(String, Value, bool)>,
     /// Input files with the SHA-256 of their content.
     pub inputs: Vec<(String, String)>,
     /// What all random numbers came from, where there were any.
@@ -57,14 +65,23 @@ impl Provenance {
             let content = files::read_bytes(&path).ok()?;
             Some((path.display().to_string(), files::sha256(&content)))
         };
-        Provenance { command, inputs: found.into_iter().filter_map(hash).collect(), seed: None, time: None }
+        let inputs = found.into_iter().filter_map(hash).collect();
+        Provenance { command, options: Vec::new(), inputs, seed: None, time: None }
+    }
+
+    /// The same with the options of `command`, as it was typed.
+    pub fn with_options(self, command: &Command) -> Provenance {
+        let matches = command.clone().try_get_matches_from(std::env::args_os());
+        Provenance { options: matches.map_or_else(|_| Vec::new(), |m| options(command, &m)), ..self }
     }
 
     /// As JSON.
-    pub fn json(&self) -> serde_json::Value {
-        let input = |(file, sha256): &(String, String)| serde_json::json!({ "file": file, "sha256": sha256 });
-        let mut json = serde_json::json!({
+    pub fn json(&self) -> Value {
+        let input = |(file, sha256): &(String, String)| json!({ "file": file, "sha256": sha256 });
+        let options = self.options.iter().map(|(name, value, _)| (name.clone(), value.clone()));
+        let mut json = json!({
             "command": self.command,
+            "options": options.collect::<Map<_, _>>(),
             "program": concat!("rodcal ", env!("CARGO_PKG_VERSION")),
             "inputs": self.inputs.iter().map(input).collect::<Vec<_>>(),
         });
@@ -82,8 +99,41 @@ impl Provenance {
         let inputs = self.inputs.iter().map(|(file, hash)| (format!("SHA-256 of {file}"), hash.clone()));
         let seed = self.seed.iter().map(|seed| ("seed".to_owned(), seed.to_string()));
         let time = self.time.iter().map(|time| ("time".to_owned(), time.clone()));
-        std::iter::once(("command".to_owned(), self.command.clone())).chain(seed).chain(time).chain(inputs)
+        let said = |(name, value, is_default): &(String, Value, bool)| match value {
+            Value::Null => format!("--{name} not given"),
+            Value::Bool(is_set) => format!("--{name} {}", if *is_set { "on" } else { "off" }),
+            value => {
+                let by_default = if *is_default { " (default)" } else { "" };
+                format!("--{name} {}{by_default}", value.as_str().unwrap_or_default())
+            }
+        };
+        let options = self.options.iter().map(said).collect::<Vec<_>>().join(", ");
+        let options = (!options.is_empty()).then(|| ("options".to_owned(), options));
+        let command = ("command".to_owned(), self.command.clone());
+        std::iter::once(command).chain(options).chain(seed).chain(time).chain(inputs)
     }
+}
+
+/// The options of the command that was asked for, without those that every command has.
+fn options(command: &Command, matches: &ArgMatches) -> Vec<(String, Value, bool)> {
+    if let Some((name, matches)) = matches.subcommand() {
+        return command.find_subcommand(name).map_or_else(Vec::new, |command| options(command, matches));
+    }
+    let own = command.get_arguments().filter(|argument| argument.get_help_heading() != Some(output::OUTPUT));
+    let option = |argument: &clap::Arg| {
+        let (id, name) = (argument.get_id().as_str(), argument.get_long()?);
+        let value = match argument.get_action() {
+            ArgAction::Help | ArgAction::HelpShort | ArgAction::HelpLong | ArgAction::Version => return None,
+            ArgAction::SetTrue => Value::Bool(matches.get_flag(id)),
+            _ => matches.get_raw(id).map_or(Value::Null, |values| {
+                let values: Vec<_> = values.map(|value| value.to_string_lossy()).collect();
+                Value::String(values.join(" "))
+            }),
+        };
+        let is_default = matches.value_source(id) == Some(ValueSource::DefaultValue);
+        Some((name.to_owned(), value, is_default))
+    };
+    own.filter_map(option).collect()
 }
 
 /// The files that a campaign or a design names in its first lines, relative to its own directory.
@@ -105,6 +155,28 @@ mod tests {
 
     fn provenance(arguments: &[&str]) -> Provenance {
         Provenance::of(arguments.iter().map(|argument| (*argument).to_owned()))
+    }
+
+    #[test]
+    fn options_at_their_defaults_are_said_too() {
+        let argument = |name: &'static str| clap::Arg::new(name).long(name);
+        let own = [
+            argument("count").default_value("3"),
+            argument("seed"),
+            argument("mode"),
+            argument("refine").action(ArgAction::SetTrue),
+            argument("json").help_heading(output::OUTPUT),
+        ];
+        let command = Command::new("rodcal").subcommand(Command::new("fit").args(own));
+        let matches = command.clone().get_matches_from(["rodcal", "fit", "--mode", "fea"]);
+        let options = options(&command, &matches);
+        let made = Provenance { options, ..provenance(&["fit"]) };
+        let lines: Vec<_> = made.lines().collect();
+        assert_eq!(lines[1].1, "--count 3 (default), --seed not given, --mode fea, --refine off");
+        assert_eq!(
+            made.json()["options"],
+            json!({ "count": "3", "seed": null, "mode": "fea", "refine": false })
+        );
     }
 
     #[test]

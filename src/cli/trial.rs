@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use rodcal::delimited::visible;
 use rodcal::parallel::in_parallel;
-use rodcal::{Error, Result};
+use rodcal::{Error, Result, files};
 use rodcal_trial::answers::{self, Answer};
 use rodcal_trial::archive::{self, Manifest, Plan};
 use rodcal_trial::rig::residuals;
@@ -219,7 +219,17 @@ impl ScoreAnswers {
         });
         progress.finish();
         let score = sealed.score(&outcomes.into_iter().collect::<Result<Vec<_>>>()?);
-        Ok(Outcome { text: Some(score.text()), ..Outcome::new(score.json()?, report::report(&score)) })
+        // a directory on the command line says nothing of what was in it
+        let read = [self.directory.join(archive::MANIFEST), key, answers];
+        let hashed =
+            |path: &PathBuf| Ok((path.display().to_string(), files::sha256(&files::read_bytes(path)?)));
+        let mut inputs = read.iter().map(hashed).collect::<Result<Vec<_>>>()?;
+        inputs.retain(|(file, _)| !std::env::args().any(|argument| argument == *file));
+        Ok(Outcome {
+            text: Some(score.text()),
+            inputs,
+            ..Outcome::new(score.json()?, report::report(&score))
+        })
     }
 
     /// Makes the measurement that an answer proposes and diagnoses the recording with it.

@@ -29,7 +29,7 @@ pub(super) fn scales(chart: &Chart, width: f64, least_unit: f64) -> (Scale, Scal
     let x = roomy(width, count(width, 62.0), |count| {
         prefixed(&chart.x, scale(&chart.x, xs, count, snug), Direction::Right)
     });
-    let x = if chart.x.names.is_empty() { x } else { thinned(x, width) };
+    let x = if chart.x.names.is_empty() || chart.x.names_upwards { x } else { thinned(x, width) };
     let y = prefixed(&chart.y, scale(&chart.y, ys, count(height, 36.0), snug), Direction::Up);
     (x, y, height)
 }

@@ -90,6 +90,8 @@ pub struct Axis {
     pub log: bool,
     /// Names at given values in place of numbers: for bars of categories.
     pub names: Vec<(f64, String)>,
+    /// Names along x read upwards: many long ones stand side by side, and none is left out.
+    pub names_upwards: bool,
 }
 
 impl Axis {

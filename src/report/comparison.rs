@@ -135,6 +135,18 @@ pub fn verdict(campaign: &Campaign, comparison: &Comparison) -> String {
     }
 }
 
+/// What no compensation at all is worth beside `mode`: nothing where either was not compared.
+pub fn without_compensation(comparison: &Comparison, mode: Mode) -> Option<String> {
+    let index = comparison.calibrations.iter().position(|c| c.mode == Mode::None)?;
+    let pair = [mode, Mode::None];
+    let is_pair = |d: &&Difference| pair.contains(&d.mode) && pair.contains(&d.against);
+    let difference = comparison.differences.iter().find(is_pair)?;
+    let mean = length(comparison.summary(index).mean);
+    let said =
+        if difference.is_significant { "a significant difference" } else { "no significant difference" };
+    Some(format!("Without compensation {mean}: {said}."))
+}
+
 fn better_than(d: &Difference) -> String {
     let (better, worse, sign) =
         if d.mean < 0.0 { (d.mode, d.against, -1.0) } else { (d.against, d.mode, 1.0) };

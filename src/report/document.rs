@@ -25,6 +25,8 @@ pub struct Report {
     pub sections: Vec<Section>,
     /// Where it all comes from: name and value, for example input files, options, version.
     pub provenance: Vec<(String, String)>,
+    /// The file beside its page that has the result as JSON; empty where there is none.
+    pub result_file: String,
 }
 
 /// Another page of the same directory.

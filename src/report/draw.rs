@@ -85,8 +85,20 @@ pub(super) fn draw(figure: &Figure, medium: Medium) -> String {
     if let Some(legend) = shared {
         legend.draw(&mut canvas, [EDGE_PX, top]);
     }
-    let titles: Vec<&str> = figure.panels.iter().map(|c| c.title.as_str()).collect();
-    canvas.finish(&titles.join("; "), &figure.caption)
+    canvas.finish(&spoken_title(figure), &figure.caption)
+}
+
+/// What the panels are called; where none has a title, what the picture is by its caption's first
+/// sentence, or by its name.
+fn spoken_title(figure: &Figure) -> String {
+    let titles: Vec<&str> =
+        figure.panels.iter().map(|c| c.title.as_str()).filter(|t| !t.is_empty()).collect();
+    let first = figure.caption.split(". ").next().unwrap_or_default().trim_end_matches('.');
+    match (titles.is_empty(), first.is_empty()) {
+        (false, _) => titles.join("; "),
+        (true, false) => first.to_owned(),
+        (true, true) => figure.name.replace('-', " "),
+    }
 }
 
 fn plan(figure: &Figure, columns: usize, width: f64, medium: Medium) -> Vec<Plan<'_>> {
@@ -187,12 +199,18 @@ impl<'a> Plan<'a> {
         self.left = by_x;
     }
 
+    /// Room below the ticks of x for their texts.
+    fn names_px(&self) -> f64 {
+        let widest = || self.chart.x.names.iter().map(|(_, name)| text_width_px(name, NOTE.size_px));
+        if self.chart.x.names_upwards { widest().fold(10.0, f64::max) + 8.0 } else { 18.0 }
+    }
+
     fn legend_top(&self) -> f64 {
         let bottom = self.frame.area.bottom;
         match (self.chart.frameless, self.chart.x.label.is_empty() || !self.labelled[0]) {
             (true, _) => bottom,
-            (false, true) => bottom + TICK_PX + 18.0,
-            (false, false) => bottom + TICK_PX + 38.0,
+            (false, true) => bottom + TICK_PX + self.names_px(),
+            (false, false) => bottom + TICK_PX + self.names_px() + 20.0,
         }
     }
 
@@ -293,10 +311,19 @@ impl<'a> Plan<'a> {
                 if self.chart.x.names.is_empty() {
                     canvas.line(&[[x, area.bottom], [x, area.bottom + TICK_PX]], Rgb::INK, 1.0, Dash::Solid);
                 }
-                canvas.text([x, area.bottom + TICK_PX + 9.0], label, NOTE, Rgb::INK);
+                let (below, lettering) = match self.chart.x.names_upwards {
+                    true => (2.0, Lettering { anchor: Anchor::Right, upwards: true, ..NOTE }),
+                    false => (9.0, NOTE),
+                };
+                canvas.text([x, area.bottom + TICK_PX + below], label, lettering, Rgb::INK);
             }
             if self.labelled[0] {
-                canvas.text([middle_x, area.bottom + TICK_PX + 28.0], &set.label, LABEL, Rgb::INK);
+                canvas.text(
+                    [middle_x, area.bottom + TICK_PX + self.names_px() + 10.0],
+                    &set.label,
+                    LABEL,
+                    Rgb::INK,
+                );
             }
         });
         let at_right = Lettering { anchor: Anchor::Right, ..NOTE };
@@ -360,6 +387,9 @@ fn left_margin(chart: &Chart, width: f64, medium: Medium, is_single: bool) -> f6
 
 /// Room right of the plotting area: half of the last tick label.
 fn right_margin(chart: &Chart) -> f64 {
+    if chart.x.names_upwards {
+        return 6.0;
+    }
     let (x, _, _) = scales(chart, 300.0, 0.0);
     x.ticks.last().map_or(0.0, |(_, label)| 0.5 * text_width_px(label, NOTE.size_px)).clamp(6.0, 40.0)
 }

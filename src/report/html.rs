@@ -46,7 +46,7 @@ pub fn page(report: &Report) -> String {
                     }
                     @if report.sections.len() > 1 { (contents(report)) }
                     @for section in sections { (section) }
-                    @if !report.provenance.is_empty() { (provenance(report)) }
+                    @if !report.provenance.is_empty() || !report.result_file.is_empty() { (provenance(report)) }
                 }
                 footer { p { "Written by rodcal " (env!("CARGO_PKG_VERSION")) "." } }
                 script { (PreEscaped(include_str!("html/page.js"))) }
@@ -165,6 +165,9 @@ fn provenance(report: &Report) -> Markup {
         section.provenance {
             h2 { "Where this comes from" }
             dl { @for (name, value) in &report.provenance { dt { (name) } dd { (value) } } }
+            @if !report.result_file.is_empty() {
+                p.files { "All numbers: " a href=(report.result_file) { (report.result_file) } }
+            }
         }
     }
 }

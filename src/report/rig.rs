@@ -114,7 +114,7 @@ pub fn headline(fit: &Fit, rod: Option<&Rod>) -> String {
                 true => format!("Rod {name} is as stiff as its model, within the uncertainty"),
                 false => format!("Rod {name} is {by} {word} than its model"),
             };
-            format!("{verdict}: r_rod = {}{}.", significant(r.value, 5), interval(r))
+            format!("{verdict}: r_rod = {}{}.", r.show(1.0), interval(r))
         }
         _ => {
             let words =
@@ -133,13 +133,9 @@ fn cards(fit: &Fit, rod: Option<&Rod>) -> Vec<Card> {
             true => Tone::Good,
             false => Tone::Attention,
         };
-        let detail = half.map_or_else(
-            || "no interval".to_owned(),
-            |w| format!("95 % interval {} to {}", four(ratio.value - w), four(ratio.value + w)),
-        );
-        cards.push(
-            Card::new("r_rod, measured over modelled", significant(ratio.value, 5), detail).toned(tone),
-        );
+        let detail = half
+            .map_or_else(|| "no interval".to_owned(), |w| format!("95 % interval {}", ends(ratio.value, w)));
+        cards.push(Card::new("r_rod, measured over modelled", ratio.show(1.0), detail).toned(tone));
     }
     let curved = fit.lines.iter().filter(|line| line.lack_of_fit.is_some_and(|test| test.is_significant()));
     let curved: Vec<String> = curved.map(|line| line.key.label()).collect();
@@ -156,9 +152,18 @@ fn cards(fit: &Fit, rod: Option<&Rod>) -> Vec<Card> {
 
 fn interval(estimate: &Estimate) -> String {
     match estimate.half_width_95() {
-        Some(w) => format!(" (95 % interval {} to {})", four(estimate.value - w), four(estimate.value + w)),
+        Some(w) => format!(" (95 % interval {})", ends(estimate.value, w)),
         None => " (no repeats and no third load: no uncertainty)".into(),
     }
+}
+
+/// The ends of an interval, to two significant digits of half its width.
+fn ends(value: f64, half: f64) -> String {
+    if !(half > 0.0 && half.is_finite()) {
+        return format!("{} to {}", four(value - half), four(value + half));
+    }
+    let decimals = (1 - half.log10().floor() as i32).clamp(0, 12) as usize;
+    format!("{:.decimals$} to {:.decimals$}", value - half, value + half)
 }
 
 fn four(value: f64) -> String {
@@ -328,6 +333,14 @@ fn warnings(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_interval_has_two_digits_of_its_half_width() {
+        assert_eq!(ends(1.3811, 0.1171), "1.26 to 1.50");
+        assert_eq!(ends(1.0153, 0.0041), "1.0112 to 1.0194");
+        assert_eq!(ends(110.3, 13.0), "97 to 123");
+        assert_eq!(ends(1.0, 0.0), "1.000 to 1.000");
+    }
     use crate::rig;
 
     #[test]

@@ -8,7 +8,7 @@ mod tests;
 use serde_json::{Value, json};
 
 pub use self::difference::{Change, Difference, Input, LEVEL, State};
-pub use self::run::{Quantity, Run};
+pub use self::run::{Quantity, Run, spoken};
 use super::chart::{Bar, Chart, Colour, Direction, Figure, Mark, Style};
 use super::scale::typeset;
 use super::table::{Align, Column, Table};
@@ -101,6 +101,7 @@ pub fn json(runs: &Runs) -> Value {
             "significant": change.is_significant,
         })
     };
+    let option = |(name, [first, other]): &(String, [String; 2])| json!({ "option": name, "first": first, "other": other });
     let differences = runs.compared().map(|(other, difference)| {
         let inputs = difference.inputs.iter().map(
             |input| json!({ "first": input.files[0], "other": input.files[1], "state": word(input.state) }),
@@ -112,6 +113,7 @@ pub fn json(runs: &Runs) -> Value {
         json!({
             "folder": other.folder,
             "inputs": inputs.collect::<Vec<_>>(),
+            "options": difference.options.iter().map(option).collect::<Vec<_>>(),
             "shared_recordings": difference.shared_recordings,
             "parameters": difference.parameters.iter().map(change).collect::<Vec<_>>(),
             "errors": difference.errors.iter().map(change).collect::<Vec<_>>(),
@@ -165,7 +167,10 @@ fn headline(runs: &Runs, other: &Run, difference: &Difference) -> String {
         (0, _) => "all inputs are the same".into(),
         (changed, all) => format!("{changed} of {all} inputs differ"),
     };
-    let mut facts = vec![inputs, parameters_said(difference)];
+    let changed = |(name, [a, b]): &(String, [String; 2])| format!("{name} {a} → {b}");
+    let mut facts = vec![inputs];
+    facts.extend(difference.options.iter().map(changed));
+    facts.push(parameters_said(difference));
     facts.extend(main_error(difference).map(|change| {
         let [a, b] = change.values.each_ref().map(shown);
         format!("{} {a} → {b} {}", change.name, change.unit).trim_end().to_owned()
@@ -303,6 +308,11 @@ fn of_pair(first: &Run, other: &Run, difference: &Difference, is_alone: bool) ->
         let file = |k: usize| input.files[k].clone().unwrap_or_else(|| "–".into());
         inputs.row([file(0), file(1), word(input.state).into()]);
     }
+    let columns = vec![Column::text("option"), Column::text(names[0]), Column::text(names[1])];
+    let mut options = Table::new("options", format!("Options that differ, {pair}."), columns);
+    for (name, [a, b]) in &difference.options {
+        options.row([name, a, b]);
+    }
     let mut parameters = changes("parameters", format!("Parameters, {pair}."), names, &difference.parameters);
     let note = format!(
         "± is one standard error. Ratio: difference over √(s₁² + s₂²). Significant: by Student's t with at most {} % \
@@ -319,8 +329,13 @@ fn of_pair(first: &Run, other: &Run, difference: &Difference, is_alone: bool) ->
         let yes = |has: bool| if has { "found" } else { "–" }.to_owned();
         findings.row([finding.clone(), yes(has[0]), yes(has[1])]);
     }
-    let sections =
-        [("Inputs", inputs), ("Parameters", parameters), ("Errors", errors), ("Findings", findings)];
+    let sections = [
+        ("Inputs", inputs),
+        ("Options", options),
+        ("Parameters", parameters),
+        ("Errors", errors),
+        ("Findings", findings),
+    ];
     let with_rows = sections.into_iter().filter(|(_, table)| !table.rows.is_empty());
     let mut picture = difference_picture(&difference.parameters);
     let section = |(what, table): (&str, Table)| {

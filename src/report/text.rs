@@ -49,9 +49,9 @@ fn wrapped_within(words: &str, width: usize) -> String {
     words.lines().map(|line| hanging("", line, width)).collect()
 }
 
-/// One paragraph after `mark`, further lines below its first word. What is longer than a line stays
-/// whole.
-fn hanging(mark: &str, words: &str, width: usize) -> String {
+/// One paragraph after `mark`, further lines below its first word, in lines of at most 100 columns.
+/// What is longer than a line stays whole.
+pub fn hanging(mark: &str, words: &str, width: usize) -> String {
     let width = width.min(WIDTH);
     let indent = mark.chars().count();
     let (mut text, mut column) = (mark.to_owned(), indent);

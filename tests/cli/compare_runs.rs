@@ -64,7 +64,10 @@ fn runs_on_the_same_recording_are_not_tested() {
     sandbox.run("rig fit rods/5.toml stiffness_data/5.csv --robust huber --out huber").succeeded();
     let answer = sandbox.run("compare-runs a huber --json");
     assert!(answer.stderr.contains("the same recording (stiffness_data/5.csv)"), "{}", answer.stderr);
-    let difference = &answer.json()["differences"][0];
+    let json = answer.json();
+    let difference = &json["differences"][0];
+    let options = serde_json::json!([{ "option": "--robust", "first": "none", "other": "huber" }]);
+    assert_eq!(difference["options"], options);
     assert_eq!((&difference["tested"], &difference["parameters"][0]["significant"]), (&0.into(), &().into()));
     let same = sandbox.run("compare-runs a a").succeeded();
     assert!(

@@ -30,6 +30,13 @@ fn a_report_is_a_page_with_its_pictures_tables_and_result() {
                 || is("table-", &[".csv", ".md"])
         };
         assert_eq!(names.iter().find(|name| !known(name)), None, "{line}");
+        for page in &pages {
+            let page = read(&format!("{page}.html"));
+            for said in ["href=\"result.json\"", "<dt>command</dt>", "<dt>SHA-256 of "] {
+                assert!(page.contains(said), "{line}: {said}");
+            }
+            assert!(!page.contains("<title></title>"), "{line}: a picture without a title");
+        }
         let page: String = pages.iter().map(|page| read(&format!("{page}.html"))).collect();
         for (kind, tag, ending) in
             [("figure", "<figure>", ".svg"), ("table", "<table>", ".csv"), ("table", "<table>", ".md")]
@@ -135,6 +142,22 @@ fn the_demo_needs_nothing_and_says_where_its_report_is() {
     assert_eq!((&answer.stdout, &answer.stderr), (&demo.stdout, &demo.stderr));
     assert!(files.iter().all(|(name, bytes)| after.get(name) == Some(bytes)), "the files differ");
     assert_eq!(after.len(), before.len() + files.len());
+}
+
+#[test]
+fn the_demo_answers_on_its_first_page_and_says_what_compensation_is_worth() {
+    let Ran { answer, after, .. } = ran("demo");
+    assert_eq!(answer.stderr.matches("warning:").count(), 1, "{}", answer.stderr);
+    let page = |name: &str| std::str::from_utf8(&after[&format!("reports/demo/{name}.html")]).unwrap();
+    for said in [
+        "Rod 5# is 1.5 % softer",
+        "748 µm → 46.1 µm",
+        "Without compensation 47.0 µm: no significant difference",
+    ] {
+        assert!(page("index").contains(said), "{said}");
+    }
+    assert!(page("robot").contains("Without compensation") && page("robot").contains("<h2>Diagnosis</h2>"));
+    assert!(page("why").contains("lack of fit"), "a page has the warnings of what it shows");
 }
 
 #[test]

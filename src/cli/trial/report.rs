@@ -5,8 +5,10 @@ use std::collections::BTreeSet;
 use std::fmt::Display;
 
 use rodcal::report::chart::{Axis, Chart, Colour, Figure, Mark, Marker, Point, Range, Style};
+use rodcal::report::runs::spoken;
 use rodcal::report::table::{Column, Table};
 use rodcal::report::{Block, Card, Report, Section, Tone};
+use rodcal::units::significant;
 use rodcal_trial::score::{Failure, Measured, Part, Rate, Reached, Score, Verdict};
 
 /// Half the size of a circle that stands for all cases of a row, CSS pixels.
@@ -48,11 +50,12 @@ fn cards(score: &Score) -> Vec<Card> {
     for (suite, part) in score.suites() {
         let (all, missed) = (part.targets.len(), part.missed_targets.len());
         let tone = if missed == 0 { Tone::Good } else { Tone::Attention };
-        let right = part.right_when_named;
+        let (right, alike) = (part.right_when_named, part.right_or_inseparable);
         let detail = match right.share() {
-            Some(_) => {
-                format!("right in {} of {} cases in which it names an effect", right.count, right.total)
-            }
+            Some(_) => format!(
+                "right in {} of {} cases in which it names an effect; right, or not distinguishable, in {}",
+                right.count, right.total, alike.count
+            ),
             None => "no effect was named".into(),
         };
         let label = format!("Targets met: {}", heading(suite).to_lowercase());
@@ -152,7 +155,7 @@ fn rates(suite: &str, part: &Part) -> Table {
         ("misread readings: all called suspect", suspects.remarked),
         ("misread readings: something named", suspects.named),
         ("right when it names", part.right_when_named),
-        ("right, or not distinguishable from it, when it names", part.right_or_inseparable),
+        ("right, or not distinguishable, when it names", part.right_or_inseparable),
         ("right, or in its class, when it names", part.class_right_when_named),
         ("95 % intervals that hold the truth", part.coverage.all),
         (
@@ -191,7 +194,7 @@ fn confusion(suite: &str, part: &Part) -> Figure {
     let names: Vec<&Verdict> = answered.iter().copied().chain(unanswered).collect();
     let answers = answered.len();
     let place = |name: &Verdict| names.iter().position(|known| *known == name).map(|k| k as f64 + 1.0);
-    let mut chart = Chart::new("", "answer, by its number", "truth");
+    let mut chart = Chart::new("", "answer", "truth");
     for (truth, row) in rows {
         let total: f64 = row.values().map(|&count| count as f64).sum();
         for (answer, &count) in row {
@@ -212,9 +215,9 @@ fn confusion(suite: &str, part: &Part) -> Figure {
     }
     let number = |k: usize| k as f64 + 1.0;
     chart.x.range = Range::Fixed(0.4, answers as f64 + 0.6);
-    chart.x.names = (0..answers).map(|k| (number(k), (k + 1).to_string())).collect();
-    chart.y.names =
-        (0..names.len()).map(|k| (-number(k), format!("{} {}", k + 1, spaced(names[k])))).collect();
+    chart.x.names = (0..answers).map(|k| (number(k), spaced(names[k]))).collect();
+    chart.x.names_upwards = true;
+    chart.y.names = (0..names.len()).map(|k| (-number(k), spaced(names[k]))).collect();
     chart.y.range = Range::Fixed(-(names.len() as f64) - 0.6, -0.4);
     chart.height_px = Some(26.0 * names.len() as f64);
     let truths = rows.len();
@@ -329,9 +332,26 @@ fn power(suite: &str, part: &Part) -> Option<Figure> {
     })
 }
 
+/// "friction at y (friction 0.52 N)" of `friction at y (friction_n 5.200e-1)`.
+fn with_units(truth: &str) -> String {
+    let truth = truth.trim_end_matches(" ()");
+    let Some((what, numbers)) = truth.strip_suffix(')').and_then(|truth| truth.split_once(" (")) else {
+        return spaced(&truth);
+    };
+    let said = numbers.split(", ").map(|number| {
+        let (name, value) = number.rsplit_once(' ').unwrap_or((number, ""));
+        let (words, unit) = spoken(name);
+        let value = value.parse().map_or_else(|_| value.to_owned(), |value| significant(value, 3));
+        format!("{words} {value} {unit}").trim_end().to_owned()
+    });
+    format!("{} ({})", spaced(&what), said.collect::<Vec<_>>().join(", "))
+}
+
 fn failures(suite: &str, failures: &[Failure]) -> Table {
     let row = |failure: &Failure| {
-        vec![failure.case.clone(), failure.what.to_owned(), failure.truth.join("; "), failure.said.join("; ")]
+        let truth: Vec<String> = failure.truth.iter().map(|truth| with_units(truth)).collect();
+        let said = spaced(&failure.said.join("; "));
+        vec![failure.case.clone(), failure.what.to_owned(), truth.join("; "), said]
     };
     let left_out = failures.len().saturating_sub(MOST_FAILURES);
     Table {
@@ -341,5 +361,24 @@ fn failures(suite: &str, failures: &[Failure]) -> Table {
         rows: failures.iter().take(MOST_FAILURES).map(row).collect(),
         notes: (left_out > 0).then(|| format!("{left_out} more are in the JSON.")).into_iter().collect(),
         ..Table::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_concealed_is_said_in_words_with_units() {
+        for (raw, words) in [
+            (
+                "joint_compliance at station 3 (bending_urad_per_nm 5.352e1)",
+                "joint compliance at station 3 (bending 53.5 µrad/(N·m))",
+            ),
+            ("backlash at y (lost_um 2.500e0, ratio 1.000e-1)", "backlash at y (lost 2.50 µm, ratio 0.100)"),
+            ("copy_mistake at row 3 ()", "copy mistake at row 3"),
+        ] {
+            assert_eq!(with_units(raw), words);
+        }
     }
 }

@@ -86,6 +86,7 @@ fn left(subject: &Subject) -> Card {
             let value = format!("{} µm rms", um(remainder.rms));
             Card::new("Unexplained", value, format!("{}; {noise}", remainder.location)).toned(Tone::Attention)
         }
-        None => Card::new("Unexplained", "nothing", noise).toned(Tone::Good),
+        // scatter is unexplained too: "nothing" would contradict the headline
+        None => Card::new("Pattern in what is left", "none", noise).toned(Tone::Good),
     }
 }

@@ -88,3 +88,23 @@ fn the_view_box_is_the_size_ten_times_and_there_are_no_ids() {
     assert!(document.descendants().all(|node| node.attribute("id").is_none()));
     assert!(svg.contains("<desc>Caption</desc>") && svg.contains("(c) "), "{svg}");
 }
+
+#[test]
+fn names_along_x_read_upwards_and_none_is_left_out() {
+    let names: Vec<(f64, String)> =
+        (1..=14).map(|k| (f64::from(k), format!("a very long name {k}"))).collect();
+    let with = |names_upwards: bool| {
+        let points = (1..=14).map(|k| Point { x: f64::from(k), y: 1.0, error: 0.0 }).collect();
+        let mark = Mark::Points { label: String::new(), points, style: Style::nth(0) };
+        let mut chart = Chart::new("", "answer", "truth").with(mark);
+        chart.x.names = names.clone();
+        chart.x.names_upwards = names_upwards;
+        Figure::from(chart).captioned("Answers. And more.").svg()
+    };
+    assert!(with(false).matches("a very long name").count() < 14);
+    assert_eq!(with(true).matches("a very long name").count(), 14);
+    assert!(
+        with(true).contains("<title>Answers</title>"),
+        "a picture without a title is called by its caption"
+    );
+}

@@ -7,12 +7,36 @@
     if (className) element.className = className;
     return element;
   };
+  const plain = text => text.replace(/[\s\u2007\u2008\u2009]/g, '').replaceAll('\u2212', '-');
   const number = cell => {
-    const text = cell.textContent.replace(/[\s\u2007\u2008]/g, '').replace('\u2212', '-');
+    const text = plain(cell.textContent);
     return /^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(text) ? Number(text) : NaN;
   };
+  // what a cell is sorted by, however its number is written: "a ± b", "a (b to c)", "< a", "10³ : 1",
+  // "1.2·10³", "a of b"; NaN of words
+  const RAISED = '\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079';
+  const SIZE = /^([-+]?\d*\.?\d+(?:e[-+]?\d+)?)(?:[×·]10\^(-?\d+))?(?:\^(-?\d+))?/i;
+  const size = text => {
+    const raised = text.replace(/\u207b?[\u2070\u00b9\u00b2\u00b3\u2074-\u2079]+/g,
+      power => `^${[...power].map(c => c === '\u207b' ? '-' : RAISED.indexOf(c)).join('')}`);
+    const found = SIZE.exec(raised);
+    if (!found) return [NaN, raised];
+    const [all, digits, ten, power] = found;
+    return [Number(digits) ** Number(power ?? 1) * 10 ** Number(ten ?? 0), raised.slice(all.length)];
+  };
+  const key = cell => {
+    const text = plain(cell.textContent);
+    const [, bound, rest] = /^([<>≤≥≈~]?)(.*)$/u.exec(text);
+    const [value, after] = size(rest);
+    if (after.startsWith(':')) return value / size(after.slice(1))[0];
+    // words may begin with a number too
+    const ends = /^($|[%°±(→–]|to\d|of\d)/.test(after) || cell.className === 'number';
+    return ends ? value * { '<': 1 - 1e-12, '>': 1 + 1e-12 }[bound] || value : NaN;
+  };
 
-  // sorting: ascending, descending, as it was
+  // sorting: ascending, descending, as it was. What has no number stands last, and a row that
+  // continues the one above it goes where that goes
+  const words = new Intl.Collator('en', { numeric: true });
   const sort = (table, column, button) => {
     const body = table.tBodies[0];
     const rows = [...body.rows];
@@ -21,13 +45,21 @@
     for (const cell of table.tHead.rows[0].cells) cell.ariaSort = 'none';
     button.parentElement.ariaSort = next;
     const sign = next === 'descending' ? -1 : 1;
-    rows.sort((a, b) => {
-      if (next === 'none') return a.dataset.at - b.dataset.at;
-      const [x, y] = [a, b].map(row => row.cells[column]);
-      const difference = number(x) - number(y);
-      return sign * (Number.isNaN(difference) ? x.textContent.localeCompare(y.textContent) : difference);
-    });
-    body.append(...rows);
+    rows.sort((a, b) => a.dataset.at - b.dataset.at);
+    const groups = [];
+    for (const row of rows) {
+      const continues = groups.length && /^$|^its /.test(row.cells[0].textContent.trim());
+      if (continues) groups.at(-1).push(row); else groups.push([row]);
+    }
+    if (next !== 'none') {
+      groups.sort(([a], [b]) => {
+        const [x, y] = [a, b].map(row => row.cells[column]);
+        const [p, q] = [key(x), key(y)];
+        const [noX, noY] = [Number.isNaN(p), Number.isNaN(q)];
+        return noX && noY ? sign * words.compare(x.textContent, y.textContent) : noX - noY || sign * (p - q);
+      });
+    }
+    body.append(...groups.flat());
   };
 
   // units: of all tables and pictures at once. One of 'a' in units of its choice, and 'a/b' part by part

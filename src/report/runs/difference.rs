@@ -51,6 +51,8 @@ pub struct Change {
 pub struct Difference {
     /// Input files.
     pub inputs: Vec<Input>,
+    /// Options that differ, by name: in the first run and in the other.
+    pub options: Vec<(String, [String; 2])>,
     /// Recordings that both runs were made of: their errors are common, and nothing is tested.
     pub shared_recordings: Vec<String>,
     /// Parameters.
@@ -81,6 +83,7 @@ impl Difference {
         let has = |name: &String| [first, other].map(|run| run.findings.contains(name));
         Ok(Difference {
             inputs,
+            options: options(first, other),
             shared_recordings,
             parameters,
             errors: changes(&first.errors, &other.errors),
@@ -106,6 +109,18 @@ impl Change {
     pub fn ratio(&self) -> Option<f64> {
         Some(self.difference? / self.std_error.filter(|&error| error > 0.0)?)
     }
+}
+
+/// The options that differ; one that a run does not know was not given there.
+fn options(first: &Run, other: &Run) -> Vec<(String, [String; 2])> {
+    let names = |run: &Run| run.options.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    let value = |run: &Run, name: &String| {
+        let found = run.options.iter().find(|(known, _)| known == name);
+        found.map_or_else(|| "not given".to_owned(), |(_, value)| value.clone())
+    };
+    let both = |name: &String| (name.clone(), [first, other].map(|run| value(run, name)));
+    let (a, b) = (names(first), names(other));
+    united(&a, &b).map(both).filter(|(_, [a, b])| a != b).collect()
 }
 
 fn united<'a, T: PartialEq>(first: &'a [T], other: &'a [T]) -> impl Iterator<Item = &'a T> {
@@ -220,6 +235,19 @@ mod tests {
         assert_eq!(states, [State::Same, State::Changed, State::Changed, State::Alone, State::Alone]);
         assert_eq!(found[2].files, [Some("old.csv".into()), Some("new.csv".into())]);
         assert_eq!(found[4].files, [None, Some("c.stl".into())]);
+    }
+
+    #[test]
+    fn options_that_differ_are_listed_and_no_others() {
+        let with = |options: &[(&str, &str)]| {
+            let options = options.iter().map(|(name, value)| ((*name).into(), (*value).into())).collect();
+            Run { options, ..run(&[], 1.0) }
+        };
+        let first = with(&[("--mode", "meas"), ("--draws", "20")]);
+        let other = with(&[("--mode", "none"), ("--draws", "20"), ("--robust", "huber")]);
+        let found = Difference::between(&first, &other).unwrap().options;
+        let expected = [("--mode", ["meas", "none"]), ("--robust", ["not given", "huber"])];
+        assert_eq!(found, expected.map(|(name, values)| (name.to_owned(), values.map(str::to_owned))));
     }
 
     /// t = 1.5/(0.3·√2) = 3.536; with 8 degrees of freedom P = 0.0077, below 0.05/2; 1.0/(0.3·√2)

@@ -25,6 +25,8 @@ pub struct Run {
     pub command: String,
     /// Program and version.
     pub program: String,
+    /// Every option by its name, and what it was set to, in words.
+    pub options: Vec<(String, String)>,
     /// Files with the SHA-256 of their content.
     pub inputs: Vec<(String, String)>,
     /// What was estimated or calculated.
@@ -80,6 +82,7 @@ impl Run {
             subcommand: subcommand(command),
             command: command.into(),
             program: program.into(),
+            options: provenance["options"].as_object().into_iter().flatten().map(option).collect(),
             inputs: items(&provenance["inputs"]).filter_map(input).collect(),
             parameters: Vec::new(),
             errors: Vec::new(),
@@ -197,6 +200,17 @@ fn compliances(json: &Value) -> Vec<Quantity> {
     entries
 }
 
+/// An option as it stands in the provenance: its value, or whether it is set.
+fn option((name, value): (&String, &Value)) -> (String, String) {
+    let value = match value {
+        Value::Null => "not given".to_owned(),
+        Value::Bool(is_set) => if *is_set { "on" } else { "off" }.to_owned(),
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    };
+    (format!("--{name}"), value)
+}
+
 fn finding_name(finding: &Value) -> String {
     let word = |key: &str| finding[key].as_str().unwrap_or_default().replace('_', " ");
     format!("{}, {}", word("effect"), word("location"))
@@ -228,8 +242,8 @@ fn figures(json: &Value, prefix: &str) -> Vec<Quantity> {
     figures
 }
 
-/// The words of a key and the unit at its end.
-fn spoken(key: &str) -> (String, String) {
+/// The words of a key and the unit at its end: "bending", "µrad/(N·m)" of `bending_urad_per_nm`.
+pub fn spoken(key: &str) -> (String, String) {
     const UNITS: [(&str, &str); 17] = [
         ("_um_per_mm", "µm/mm"),
         ("_um_per_n", "µm/N"),

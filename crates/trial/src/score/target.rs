@@ -93,11 +93,12 @@ impl Serialize for Missed {
     }
 }
 
-/// `    clean recordings without any finding    36 of 40, 90.0 % (76.9 to 96.0); wanted at least 98.0 %`.
+/// `met    clean recordings without any finding`, and below it, so that a terminal of 80 columns has
+/// room, `       40 of 40, 100.0 % (91.2 to 100.0); wanted at least 98.0 %`.
 impl fmt::Display for Reached {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let verdict = if self.missed().is_some() { "missed" } else { "met" };
-        write!(f, "{verdict:6} {:44} ", self.target.what)?;
+        write!(f, "{verdict:6} {}\n       ", self.target.what)?;
         match &self.measured {
             Measured::Rate(rate) => write!(f, "{rate}")?,
             Measured::Number(number) => write!(f, "{}", percent(number.unwrap_or(f64::NAN)))?,

@@ -19,7 +19,7 @@ use Measured::{Number, Rate as Share};
 
 static TARGETS: [OfPart; 13] = [
     least("clean recordings without any finding", 0.98, |part| Share(part.clean.silent)),
-    least("right when it names", 0.95, |part| Share(part.right_or_inseparable)),
+    least("right, or not distinguishable, when it names", 0.95, |part| Share(part.right_or_inseparable)),
     least("name and place of one identifiable effect", 0.95, |part| Share(part.single.location_ok)),
     least("truth inside the reported class", 0.97, |part| Share(part.single.in_class)),
     least("both of two identifiable effects found", 0.85, |part| Share(part.pairs.both_found)),

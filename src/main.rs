@@ -5,7 +5,7 @@ mod cli;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 
 fn main() -> ExitCode {
     let arguments = match cli::Arguments::try_parse() {
@@ -13,7 +13,8 @@ fn main() -> ExitCode {
         Err(error) => cli::suggestions::exit_with(error),
     };
     let started = Instant::now();
-    let deliver = |outcome| cli::output::deliver(&arguments.output, started, outcome);
+    let command = cli::Arguments::command();
+    let deliver = |outcome| cli::output::deliver(&arguments.output, &command, started, outcome);
     match cli::run(&arguments).and_then(deliver) {
         Ok(status) => status,
         Err(error) => {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use clap::{Args, CommandFactory};
+use clap::{Args, Command};
 use rodcal::answer::{Answer, LongList, write_json};
 use rodcal::delimited::{visible, visible_lines};
 use rodcal::files::{self, Existing, Staged};
@@ -14,7 +14,7 @@ use rodcal::report::{Report, text};
 use rodcal::{Error, Result};
 use serde_json::Value;
 
-use super::provenance::{Provenance, RESULT};
+use super::provenance::{OUTPUT, Provenance, RESULT};
 use super::stamp;
 
 /// Where the result goes: options of every command.
@@ -62,9 +62,6 @@ impl Options {
 
 /// What every report has, whatever it is of.
 const PAGE: &str = "index.html";
-
-/// The heading of options that every command has.
-pub const OUTPUT: &str = "Output";
 
 /// Where what was found is applied without --out.
 pub const APPLIED: &str = "reports/diagnosed";
@@ -143,7 +140,7 @@ impl Outcome {
 ///
 /// # Errors
 /// [`Error::File`] where a file cannot be written, [`Error::InTheWay`] where one would be lost.
-pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<ExitCode> {
+pub fn deliver(options: &Options, command: &Command, started: Instant, outcome: Outcome) -> Result<ExitCode> {
     let Outcome {
         mut json,
         long,
@@ -178,11 +175,9 @@ pub fn deliver(options: &Options, started: Instant, outcome: Outcome) -> Result<
             report.warnings.push("--stamp has no effect without --out".into());
         }
         // the same words on stderr, on the page and in the JSON
-        let all = || std::iter::once(&*report).chain(&pages).flat_map(|page| page.warnings.clone());
-        json["warnings"] = all().collect::<Vec<String>>().into();
+        json["warnings"] = report.warnings.as_slice().into();
         if directory.is_some() || options.verbose {
-            let mut provenance =
-                Provenance::of(std::env::args().skip(1)).with_options(&super::Arguments::command());
+            let mut provenance = Provenance::of(std::env::args().skip(1)).with_options(command);
             provenance.seed = seed;
             provenance.time = options.stamp.then(stamp::time).transpose()?;
             for (file, hash) in &provenance.inputs {

@@ -8,10 +8,11 @@ use clap::{ArgAction, ArgMatches, Command};
 use rodcal::files;
 use serde_json::{Map, Value, json};
 
-use super::output;
-
 /// The result as JSON, in every directory of a report.
 pub const RESULT: &str = "result.json";
+
+/// The heading of options that every command has, none of which changes a result.
+pub const OUTPUT: &str = "Output";
 
 /// The option that says where to write: the same report elsewhere is the same report.
 const WHERE: &str = "--out";
@@ -119,7 +120,7 @@ fn options(command: &Command, matches: &ArgMatches) -> Vec<(String, Value, bool)
     if let Some((name, matches)) = matches.subcommand() {
         return command.find_subcommand(name).map_or_else(Vec::new, |command| options(command, matches));
     }
-    let own = command.get_arguments().filter(|argument| argument.get_help_heading() != Some(output::OUTPUT));
+    let own = command.get_arguments().filter(|argument| argument.get_help_heading() != Some(OUTPUT));
     let option = |argument: &clap::Arg| {
         let (id, name) = (argument.get_id().as_str(), argument.get_long()?);
         let value = match argument.get_action() {
@@ -165,7 +166,7 @@ mod tests {
             argument("seed"),
             argument("mode"),
             argument("refine").action(ArgAction::SetTrue),
-            argument("json").help_heading(output::OUTPUT),
+            argument("json").help_heading(OUTPUT),
         ];
         let command = Command::new("rodcal").subcommand(Command::new("fit").args(own));
         let matches = command.clone().get_matches_from(["rodcal", "fit", "--mode", "fea"]);

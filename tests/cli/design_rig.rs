@@ -19,7 +19,8 @@ fn filled(sandbox: &Sandbox, rod: &str, template: &str) -> String {
         let sign = if axis.starts_with('-') { -1.0 } else { 1.0 };
         let number = "xyz".find(axis.trim_start_matches('-')).unwrap();
         let offset = |channel: usize| {
-            let scatter = ((7 * k + 3 * channel) as f64).sin();
+            // no sine of the row: that comes and goes with one period, and is found
+            let scatter = 2.0 * (43758.5453 * ((7 * k + 3 * channel) as f64).sin()).rem_euclid(1.0) - 1.0;
             format!("{:.2}", sign * load * entry(channel, number) + scatter)
         };
         text += &format!("{blank},{},{},{}\n", offset(0), offset(1), offset(2));

@@ -381,6 +381,26 @@ fn a_name_that_hides_something_unknown_is_given_up() {
 }
 
 #[test]
+fn a_law_that_leaves_a_curve_needs_its_odds_against_curves_alone() {
+    let mut model = Columns::new(COUNT);
+    // the law draws one of two shapes of what nobody has named, and no better than a curve does
+    model.add("law", "", column(|x| x), false);
+    model.add("curve", "straight", column(|x| x), true);
+    model.add("curve", "bent", column(|x| (7.0 * x).sin()), true);
+    let evidence = evidence(11, |x| 30.0 * x + 12.0 * (7.0 * x).sin());
+    let best = |model: &Columns| {
+        let linear = Linearised::new(model);
+        let (hypothesis, left) = Search::new(&linear, &evidence, &[]).best(Pairs::Screened);
+        (hypothesis.terms.len(), left.is_some())
+    };
+    assert_eq!(best(&model), (0, true));
+    // without a curve in its place the law has a name beside the other
+    model.candidates[1].is_nonparametric = false;
+    model.candidates[1].weight = 1e-9;
+    assert_eq!(best(&model), (1, true));
+}
+
+#[test]
 fn a_stated_noise_that_is_too_small_is_said_and_draws_nothing() {
     let model = model();
     for seed in 0..5 {

@@ -16,7 +16,7 @@
 //!
 //! What is softer along the rod here than there is a curve over its stations ([`station`]).
 //!
-//! What comes at once and dies away has rivals that begin at every reading ([`transient`]), what
+//! What sets in suddenly and decays has rivals that begin at every reading ([`transient`]), what
 //! comes and goes with one period such of two waves ([`swing`]).
 //!
 //! What sets in at a load, or acts one way, has rivals of one number ([`kink`]). What comes and
@@ -75,8 +75,7 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
             curves.extend(transient::all(along, &coordinate, data));
         }
         for (place, group) in if is_of_line { &lines } else { &channels } {
-            let largest = group.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
-            let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
+            let size = size(group, data);
             curves.extend(curve(along, place, &coordinate, group, "um", size, |_| 1.0));
             if along.variable == clock && !is_of_line {
                 curves.extend(fine(along, place, &coordinate, group, size));
@@ -262,8 +261,7 @@ fn along_the_load(data: &[Datum]) -> Option<Entry> {
         .collect();
     let axes = numbered(along.iter().map(|&i| data[i].channel)).into_iter().max()? + 1;
     let coordinate: Coordinate = scaled(&data.iter().map(|d| Some(d.drive().abs())).collect::<Vec<_>>());
-    let largest = along.iter().fold(0.0, |max: f64, &i| max.max(data[i].measured.abs()));
-    let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
+    let size = size(&along, data);
     let sign = |i: usize| if data[i].drive() < 0.0 { -1.0 } else { 1.0 };
     (axes > 1)
         .then(|| curve(LOAD, "readings along the load", &coordinate, &along, "um", size, sign))

@@ -1,5 +1,8 @@
 //! What curves run along, and what they have in common.
 
+use std::sync::Arc;
+
+use super::super::numbering::numbered;
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Location, Parameter, UNKNOWN, Variable};
 
@@ -9,7 +12,7 @@ pub(super) const MOST_COLUMNS: usize = 6;
 pub(super) const SHARE: f64 = 0.05;
 /// The same, as a share of the largest of all readings: a sensor and its holder are a little wrong
 /// even where hardly anything is to be read.
-pub(super) const LEAST_SHIFT: f64 = 0.01;
+const LEAST_SHIFT: f64 = 0.01;
 
 /// What a curve is a function of.
 #[derive(Clone, Copy)]
@@ -80,7 +83,31 @@ pub(super) fn rival(location: Location, parameters: Vec<Parameter>) -> Candidate
 /// A coordinate from 0 to 1 for each datum; `None` where it has no meaning.
 pub(super) type Coordinate = Vec<Option<f64>>;
 
-/// The largest reading, m.
-pub(super) fn largest_reading(data: &[Datum]) -> f64 {
-    data.iter().fold(0.0, |most: f64, datum| most.max(datum.measured.abs()))
+/// Size of what adds to the readings of a group, m.
+pub(super) fn size(group: &[usize], data: &[Datum]) -> f64 {
+    let largest = group.iter().fold(0.0, |most: f64, &i| most.max(data[i].measured.abs()));
+    let of_all = data.iter().fold(0.0, |most: f64, datum| most.max(datum.measured.abs()));
+    (SHARE * largest).max(LEAST_SHIFT * of_all)
+}
+
+/// These data by channel.
+pub(super) fn by_channel(known: &[usize], data: &[Datum]) -> Vec<Arc<[usize]>> {
+    let channels = numbered(known.iter().map(|&i| data[i].channel));
+    let count = channels.iter().max().map_or(0, |last| last + 1);
+    let own = |k: usize| known.iter().zip(&channels).filter(move |(_, own)| **own == k).map(|(&i, _)| i);
+    (0..count).map(|k| own(k).collect()).collect()
+}
+
+/// The coordinate of the first reading of each datum's run, at which its zero is taken.
+pub(super) fn starts(coordinate: &Coordinate, data: &[Datum]) -> Coordinate {
+    let runs = data.iter().map(|d| d.run + 1).max().unwrap_or(0);
+    let mut first: Coordinate = vec![None; runs];
+    for (datum, x) in data.iter().zip(coordinate) {
+        let known = &mut first[datum.run];
+        *known = match (*known, *x) {
+            (Some(known), Some(x)) => Some(x.min(known)),
+            (known, x) => known.or(x),
+        };
+    }
+    data.iter().map(|d| first[d.run]).collect()
 }

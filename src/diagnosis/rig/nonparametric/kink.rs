@@ -11,7 +11,7 @@
 
 use std::sync::Arc;
 
-use super::along::{ALL_DEFLECTIONS, LEAST_SHIFT, LOAD, SHARE, largest_reading, rival};
+use super::along::{ALL_DEFLECTIONS, LOAD, SHARE, rival, size};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
 use crate::diagnosis::rig::mechanics::action::{Action, Weights};
 use crate::diagnosis::rig::recording::datum::Datum;
@@ -129,11 +129,10 @@ fn seats(data: &[Datum]) -> Vec<Entry> {
         .filter(|&i| data[i].channel == data[i].direction.axis && data[i].drive() != 0.0)
         .collect();
     let most = along.iter().fold(0.0, |most: f64, &i| most.max(data[i].drive().abs()));
-    let largest = along.iter().fold(0.0, |most: f64, &i| most.max(data[i].measured.abs()));
     if along.is_empty() || most == 0.0 {
         return Vec::new();
     }
-    let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
+    let size = size(&along, data);
     let of_exponent = |exponent: f64| {
         let weight = |&i: &usize| {
             let drive = data[i].drive();

@@ -17,19 +17,20 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::super::numbering::numbered;
-use super::along::{Along, Coordinate, LEAST_SHIFT, READING, SHARE, largest_reading, rival};
+use super::along::{Along, Coordinate, READING, by_channel, rival, size, starts};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
 use crate::diagnosis::rig::mechanics::action::{Action, Weights};
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Location};
 use crate::statistics::median;
+use crate::units::{UM, significant};
 
 const MOST_SWINGS: usize = 12;
 /// Periods that are tried for each swing more.
 const FOR_EACH: usize = 2;
 /// Times of which a swing needs so many: two, and what uneven ones lose.
 const TO_SEE_ONE: f64 = 2.5;
-/// Times from which on swings are told from a smooth curve.
+/// Times from which on swings are distinguished from a smooth curve.
 const FEWEST: usize = 12;
 /// Readings that differ by less than this part of the range are the same.
 const LEVELS: f64 = 50.0;
@@ -50,7 +51,7 @@ pub(super) fn in_time(along: Along, coordinate: &Coordinate, data: &[Datum]) -> 
     let channels = by_channel(&known, data);
     let at = |(half, &(start, said)): (usize, &(Option<&[f64]>, &str))| {
         let place = format!("{} swings, all sensors{said}", half as f64 / FOR_EACH as f64);
-        waves(along, &place, half, (&x, start), &channels, data)
+        waves((along, &place, along.follows(&place)), half, (&x, start), &channels, data)
     };
     halves.flat_map(|half| since.iter().map(move |since| (half, since))).map(at).collect()
 }
@@ -71,7 +72,10 @@ pub(super) fn of_displays(data: &[Datum], deflections: &[f64]) -> Vec<Entry> {
         let halves = widest.filter(|_| range > 0.0).and_then(|group| halves(group.iter().map(level)));
         let at = |half: usize| {
             let place = format!("{} swings, {name}", half as f64 / FOR_EACH as f64);
-            let (candidate, actions) = waves(READING, &place, half, (&x, Some(&zero)), channels, data);
+            let period = significant(range * FOR_EACH as f64 / half as f64 / UM, 2);
+            let follows = format!("repeats every {period} µm or so of the reading ({name})");
+            let said = (READING, &*place, follows);
+            let (candidate, actions) = waves(said, half, (&x, Some(&zero)), channels, data);
             // all periods together are one curve
             (Candidate { weight: OF_DISPLAY, ..candidate }, actions)
         };
@@ -104,57 +108,27 @@ fn halves(x: impl Iterator<Item = f64>) -> Option<std::ops::RangeInclusive<usize
     (different >= FEWEST).then_some(FOR_EACH..=seen.min(FOR_EACH * MOST_SWINGS))
 }
 
-/// These data by channel.
-fn by_channel(known: &[usize], data: &[Datum]) -> Vec<Arc<[usize]>> {
-    let channels = numbered(known.iter().map(|&i| data[i].channel));
-    let count = channels.iter().max().map_or(0, |last| last + 1);
-    let own = |k: usize| known.iter().zip(&channels).filter(move |(_, own)| **own == k).map(|(&i, _)| i);
-    (0..count).map(|k| own(k).collect()).collect()
-}
-
 /// Two waves of each group over x, less their value at the start where there is one.
 fn waves(
-    along: Along,
-    place: &str,
+    (along, place, follows): (Along, &str, String),
     half: usize,
     (x, start): (&[f64], Option<&[f64]>),
     groups: &[Arc<[usize]>],
     data: &[Datum],
 ) -> Entry {
     let turns = half as f64 / FOR_EACH as f64;
-    let size = |own: &[usize]| {
-        let largest = own.iter().fold(0.0, |most: f64, &i| most.max(data[i].measured.abs()));
-        0.5 * (SHARE * largest).max(LEAST_SHIFT * largest_reading(data))
-    };
     let of_group = |(own, wave): (&Arc<[usize]>, Wave)| {
         let at =
             |&i: &usize| wave(TAU * turns * x[i]) - start.map_or(0.0, |start| wave(TAU * turns * start[i]));
         let weights = Weights { data: Arc::clone(own), values: own.iter().map(at).collect() };
-        (parameter("um", 0.0, size(own), UNBOUNDED), Action::Shift(weights))
+        (parameter("um", 0.0, 0.5 * size(own, data), UNBOUNDED), Action::Shift(weights))
     };
     let waves: [Wave; 2] = [f64::cos, f64::sin];
     let all = groups.iter().flat_map(|own| waves.map(|wave| (own, wave)));
     let (parameters, actions) = all.map(of_group).unzip();
-    let location = Location::Curve {
-        label: format!("{}, {place}", along.name),
-        follows: along.follows(place),
-        along: Some(along.variable),
-    };
+    let location =
+        Location::Curve { label: format!("{}, {place}", along.name), follows, along: Some(along.variable) };
     (rival(location, parameters), actions)
-}
-
-/// The coordinate of the first reading of each datum's run.
-fn starts(coordinate: &Coordinate, data: &[Datum]) -> Coordinate {
-    let runs = data.iter().map(|d| d.run + 1).max().unwrap_or(0);
-    let mut first: Coordinate = vec![None; runs];
-    for (datum, x) in data.iter().zip(coordinate) {
-        let known = &mut first[datum.run];
-        *known = match (*known, *x) {
-            (Some(known), Some(x)) => Some(x.min(known)),
-            (known, x) => known.or(x),
-        };
-    }
-    data.iter().map(|d| first[d.run]).collect()
 }
 
 #[cfg(test)]
@@ -195,8 +169,11 @@ mod tests {
         // 1, 1½ … 9½ swings of both displays, and of dy alone
         assert_eq!(entries.len(), 36);
         let label = "reading, 2 swings, dy";
-        let (_, actions) =
+        let (candidate, actions) =
             entries.iter().find(|(candidate, _)| candidate.location.to_string() == label).unwrap();
+        // of 480 µm
+        let Location::Curve { follows, .. } = &candidate.location else { panic!("a curve") };
+        assert_eq!(follows, "repeats every 240 µm or so of the reading (dy)");
         let Action::Shift(weights) = &actions[1] else { panic!("a shift") };
         for (i, weight) in weights.iter() {
             let wave = (TAU * 2.0 * (i / 2 + 1) as f64 / 24.0).sin();

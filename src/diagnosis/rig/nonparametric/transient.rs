@@ -1,4 +1,4 @@
-//! What comes at once and dies away: a lamp that is switched on and off, a bench that was bumped
+//! What sets in suddenly and decays: a lamp that is switched on and off, a bench that was bumped
 //! and settles.
 //!
 //! ```text
@@ -12,8 +12,7 @@
 
 use std::sync::Arc;
 
-use super::super::numbering::numbered;
-use super::along::{Along, Coordinate, LEAST_SHIFT, SHARE, largest_reading, rival};
+use super::along::{Along, Coordinate, by_channel, rival, size, starts};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
 use crate::diagnosis::rig::mechanics::action::{Action, Weights};
 use crate::diagnosis::rig::recording::datum::Datum;
@@ -23,7 +22,7 @@ use crate::inference::{Candidate, Location};
 const LASTS: [f64; 3] = [1.5, 4.0, 12.0];
 /// Readings of which the first two and the last two show no such course.
 const ENDS: usize = 2;
-/// Readings from which on it is told from a smooth curve.
+/// Readings from which on it is distinguished from a smooth curve.
 const FEWEST: usize = 12;
 /// Readings up to which every beginning is tried.
 const MOST: usize = 200;
@@ -40,44 +39,31 @@ pub(super) fn all(along: Along, coordinate: &Coordinate, data: &[Datum]) -> Vec<
     if !(FEWEST..=MOST).contains(&times.len()) {
         return Vec::new();
     }
-    let channels = numbered(known.iter().map(|&i| data[i].channel));
-    let count = channels.iter().max().map_or(0, |last| last + 1);
-    let own = |k: usize| known.iter().zip(&channels).filter(move |(_, own)| **own == k).map(|(&i, _)| i);
-    let groups: Vec<Arc<[usize]>> = (0..count).map(|k| own(k).collect()).collect();
-    let start = starts(&known, &x, data);
+    let groups = by_channel(&known, data);
+    let start: Vec<f64> = starts(coordinate, data).into_iter().map(|x| x.unwrap_or(0.0)).collect();
     let between = 1.0 / (times.len() - 1) as f64;
     let begins = &times[ENDS..times.len() - ENDS];
-    let lasts = if count > 1 { &LASTS[..] } else { &LASTS[1..] };
+    let lasts = if groups.len() > 1 { &LASTS[..] } else { &LASTS[1..] };
     let weight = WEIGHT / (begins.len() * lasts.len()) as f64;
     let at = |(begin, lasts): (f64, f64)| {
         let course = |x: f64| if x < begin { 0.0 } else { (-(x - begin) / (lasts * between)).exp() };
         let of_group = |group: &Arc<[usize]>| {
-            let largest = group.iter().fold(0.0, |most: f64, &i| most.max(data[i].measured.abs()));
-            let size = (SHARE * largest).max(LEAST_SHIFT * largest_reading(data));
-            let values = group.iter().map(|&i| course(x[i]) - course(start[data[i].run])).collect();
+            let values = group.iter().map(|&i| course(x[i]) - course(start[i])).collect();
             let weights = Weights { data: Arc::clone(group), values };
-            (parameter("um", 0.0, size, UNBOUNDED), Action::Shift(weights))
+            (parameter("um", 0.0, size(group, data), UNBOUNDED), Action::Shift(weights))
         };
         let (parameters, actions) = groups.iter().map(of_group).unzip();
         let row = known.iter().filter(|&&i| x[i] >= begin).map(|&i| data[i].row).min().unwrap_or(0);
         let location = Location::Curve {
-            label: format!("{}, from row {row} on, {lasts} readings long", along.name),
-            follows: format!("comes at once at row {row} and dies away within some {lasts} readings"),
+            label: format!("{}, a decay over {lasts} readings from row {row} on", along.name),
+            follows: format!(
+                "sets in suddenly at row {row} and decays with a time constant of about {lasts} readings"
+            ),
             along: Some(along.variable),
         };
         (Candidate { weight, ..rival(location, parameters) }, actions)
     };
     begins.iter().flat_map(|&begin| lasts.iter().map(move |&lasts| (begin, lasts))).map(at).collect()
-}
-
-/// The coordinate of the first reading of each run.
-fn starts(known: &[usize], x: &[f64], data: &[Datum]) -> Vec<f64> {
-    let runs = data.iter().map(|d| d.run + 1).max().unwrap_or(0);
-    let mut first = vec![f64::INFINITY; runs];
-    for &i in known {
-        first[data[i].run] = first[data[i].run].min(x[i]);
-    }
-    first
 }
 
 #[cfg(test)]
@@ -103,7 +89,7 @@ mod tests {
         let (data, coordinate) = recorded();
         let entries = all(TIME, &coordinate, &data);
         assert_eq!(entries.len(), 16 * LASTS.len());
-        let label = "time, from row 9 on, 4 readings long";
+        let label = "time, a decay over 4 readings from row 9 on";
         let (candidate, actions) =
             entries.iter().find(|(candidate, _)| candidate.location.to_string() == label).unwrap();
         assert_eq!((candidate.parameters.len(), actions.len()), (2, 2));
@@ -116,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn of_one_sensor_the_shortest_is_not_told_from_its_noise() {
+    fn of_one_sensor_the_shortest_is_not_distinguished_from_its_noise() {
         let (mut data, _) = recorded();
         data.retain(|datum| datum.channel == Axis::Y);
         let coordinate: Coordinate = data.iter().map(|d| d.time.map(|t| t / 190.0)).collect();

@@ -37,9 +37,14 @@ fn seen_along(found: &RigDiagnosis) -> Covariate {
     let all = &found.evidence.covariates;
     let reported = covariates(&found.evidence);
     let of_variable = |variable: Variable| reported.iter().map(|&k| &all[k]).find(|c| c.variable == variable);
-    let best = match found.diagnosis.findings.first() {
-        Some(finding) => (finding.effect.seen_along)(&finding.location).into_iter().find_map(of_variable),
-        None => most_structured(found).map(|k| &all[k]).filter(|c| !c.variable.is_group()),
+    let left = found.diagnosis.discrepancy.as_ref().and_then(|left| left.location.as_ref());
+    let structured = || most_structured(found).map(|k| &all[k]).filter(|c| !c.variable.is_group());
+    let best = match (found.diagnosis.findings.first(), left) {
+        (Some(finding), _) => {
+            (finding.effect.seen_along)(&finding.location).into_iter().find_map(of_variable)
+        }
+        (None, Some(Location::Curve { along: Some(along), .. })) => of_variable(*along).or_else(structured),
+        (None, _) => structured(),
     };
     best.cloned().unwrap_or_else(|| Covariate {
         variable: Variable::Load,
@@ -76,7 +81,7 @@ pub fn residuals(found: &RigDiagnosis) -> Figure {
     let unit = if variable.unit().is_empty() { String::new() } else { format!(" / {}", variable.unit()) };
     let plainest = most_structured(found).filter(|_| diagnosis.is_mismatch()).map_or_else(String::new, |k| {
         format!(
-            " The residuals follow this variable most clearly: {}.",
+            " Of all variables the residuals follow this one most clearly: {}.",
             found.evidence.covariates[k].variable.title(NOUN)
         )
     });

@@ -113,7 +113,8 @@ pub fn run() -> Result<Outcome> {
     let short = |card: &Card| format!("{}: {}.", card.label, card.value);
     let mut said = vec![fitted];
     said.extend(cards.get(1).map(|card| format!("TX90: {} {without}", short(card).to_lowercase())));
-    said.extend(cards.get(2).map(short));
+    // the rest of it stands on its page
+    said.extend(pages[2].headline.split_once(". ").map(|(first, _)| format!("{first}.")));
     let index = Report {
         pages: links(),
         title: "rodcal demo".into(),

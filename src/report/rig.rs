@@ -114,7 +114,7 @@ pub fn headline(fit: &Fit, rod: Option<&Rod>) -> String {
                 true => format!("Rod {name} is as stiff as its model, within the uncertainty"),
                 false => format!("Rod {name} is {by} {word} than its model"),
             };
-            format!("{verdict}: r_rod = {}{}.", r.show(1.0), interval(r))
+            format!("{verdict}: r_rod = {}{}.", as_known(r), interval(r))
         }
         _ => {
             let words =
@@ -135,7 +135,7 @@ fn cards(fit: &Fit, rod: Option<&Rod>) -> Vec<Card> {
         };
         let detail = half
             .map_or_else(|| "no interval".to_owned(), |w| format!("95 % interval {}", ends(ratio.value, w)));
-        cards.push(Card::new("r_rod, measured over modelled", ratio.show(1.0), detail).toned(tone));
+        cards.push(Card::new("r_rod, measured over modelled", as_known(ratio), detail).toned(tone));
     }
     let curved = fit.lines.iter().filter(|line| line.lack_of_fit.is_some_and(|test| test.is_significant()));
     let curved: Vec<String> = curved.map(|line| line.key.label()).collect();
@@ -157,13 +157,27 @@ fn interval(estimate: &Estimate) -> String {
     }
 }
 
+/// The value with as many decimals as the ends of its interval have. No standard error beside it:
+/// a ± would be read as that interval.
+fn as_known(estimate: &Estimate) -> String {
+    match estimate.half_width_95().and_then(decimals) {
+        Some(decimals) => format!("{:.decimals$}", estimate.value),
+        None => four(estimate.value),
+    }
+}
+
 /// The ends of an interval, to two significant digits of half its width.
 fn ends(value: f64, half: f64) -> String {
-    if !(half > 0.0 && half.is_finite()) {
-        return format!("{} to {}", four(value - half), four(value + half));
+    match decimals(half) {
+        Some(decimals) => format!("{:.decimals$} to {:.decimals$}", value - half, value + half),
+        None => format!("{} to {}", four(value - half), four(value + half)),
     }
-    let decimals = (1 - half.log10().floor() as i32).clamp(0, 12) as usize;
-    format!("{:.decimals$} to {:.decimals$}", value - half, value + half)
+}
+
+/// Of two significant digits of half an interval's width.
+fn decimals(half: f64) -> Option<usize> {
+    let is_wide = half > 0.0 && half.is_finite();
+    is_wide.then(|| (1 - half.log10().floor() as i32).clamp(0, 12) as usize)
 }
 
 fn four(value: f64) -> String {
@@ -333,6 +347,7 @@ fn warnings(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rig;
 
     #[test]
     fn an_interval_has_two_digits_of_its_half_width() {
@@ -341,7 +356,6 @@ mod tests {
         assert_eq!(ends(110.3, 13.0), "97 to 123");
         assert_eq!(ends(1.0, 0.0), "1.000 to 1.000");
     }
-    use crate::rig;
 
     #[test]
     fn the_way_down_reaches_the_picture() {

@@ -9,7 +9,8 @@ use rodcal_trial::rig::{CaseSpec, Effect};
 
 use super::Answer;
 
-fn assert_unknown(spec: &CaseSpec, effect: Effect) {
+/// The headline.
+fn assert_unknown(spec: &CaseSpec, effect: Effect) -> String {
     let name = effect.name();
     let answer = Answer::simulated(spec, &[effect], 21);
     assert_eq!(answer.effects(), [""; 0], "{name}: {}", answer.json["headline"]);
@@ -19,6 +20,7 @@ fn assert_unknown(spec: &CaseSpec, effect: Effect) {
         "{name}: {}",
         answer.json["headline"]
     );
+    answer.json["headline"].to_string()
 }
 
 /// Eight loads, so that a kink is no parabola.
@@ -49,10 +51,49 @@ fn a_clamp_that_is_loose_one_way() {
     assert_unknown(&CaseSpec { both_ways: true, ..spec() }, Effect::LooseClamp(0.1));
 }
 
-/// Three trials of eight loads along z read every 20 s; from 250 s on all sensors are off by what
-/// decays within 60 s.
+/// Friction alone would be named otherwise, and so would its changes as slips, or as one of
+/// several places.
 #[test]
-fn what_sets_in_suddenly_and_decays() {
+fn friction_that_wears_is_not_plain_friction() {
+    let spec = CaseSpec { unloading: true, trials: 4, ..CaseSpec::default() };
+    let answer = assert_unknown(&spec, Effect::WearingFriction { first: 0.1, last: 0.7 });
+    assert!(answer.contains("acts like friction that changes from run to run"), "{answer}");
+}
+
+#[test]
+fn friction_that_does_not_wear_is_friction() {
+    let spec = CaseSpec { unloading: true, trials: 4, ..CaseSpec::default() };
+    let answer = Answer::simulated(&spec, &[Effect::WearingFriction { first: 0.4, last: 0.4 }], 21);
+    assert_eq!(answer.effects(), ["friction"], "{}", answer.json["headline"]);
+}
+
+/// Each load always comes after the same one on the way up, and after another one on the way down.
+#[test]
+fn a_load_that_stiffens_the_next_one_is_no_nonlinear_stiffness() {
+    let spec = CaseSpec { unloading: true, trials: 2, ..CaseSpec::default() };
+    let answer = assert_unknown(&spec, Effect::LoadBefore(-0.1));
+    assert!(answer.contains("follows the load that hung before"), "{answer}");
+}
+
+/// Three trials of eight loads along z, hung every 10 s or every 80 s.
+#[test]
+fn a_rod_that_gives_way_less_the_faster_it_is_loaded() {
+    let mut time = 0.0;
+    let (rod, text) = along_z(|k, load| {
+        let took = if (k * 7 + k / 5) % 3 == 0 { 80.0 } else { 10.0 };
+        time += took;
+        let step = if k % 8 == 0 { load } else { 1.5 };
+        (time, load * (1.0 - 0.04 * (1.0 + step / took / 0.005f64).log10()), 0.0)
+    });
+    let answer = Answer::of(Some(rod), &text);
+    let headline = answer.json["headline"].as_str().unwrap();
+    assert_eq!(answer.effects(), [""; 0], "{headline}");
+    assert!(headline.contains("follows the speed at which the load was changed"), "{headline}");
+}
+
+/// A rod, and its readings under three trials of eight loads along z. `at`: the time, s, the load
+/// that it carries, N, and a share of what all sensors are off by, of each number and load.
+fn along_z(mut at: impl FnMut(usize, f64) -> (f64, f64, f64)) -> (&'static str, String) {
     let rod = include_str!("../../rods/5.toml");
     let known = Rod::from_toml("5.toml", rod).unwrap();
     let compliance = answer::compliance(known, &ComplianceOptions::default()).unwrap().json;
@@ -60,12 +101,23 @@ fn what_sets_in_suddenly_and_decays() {
     let mut random = Random::seeded(3, 5);
     let mut text = "trial,axis,load_n,time_s,dx_um,dy_um,dz_um\n".to_owned();
     for k in 0..24 {
-        let (trial, load, time) = (1 + k / 8, 1.5 * f64::from(1 + k % 8), 20.0 * f64::from(k));
-        let share = if time < 250.0 { 0.0 } else { (-(time - 250.0) / 60.0).exp() };
+        let (trial, load) = (1 + k / 8, 1.5 * f64::from(1 + k % 8));
+        let (time, carried, share) = at(k as usize, load);
         let [x, y, z] = [(0, 40.0), (1, -30.0), (2, 25.0)]
-            .map(|(axis, um)| entry(axis) * load + um * share + random.normal());
+            .map(|(axis, um)| entry(axis) * carried + um * share + random.normal());
         text += &format!("{trial},z,{load},{time},{x:.2},{y:.2},{z:.2}\n");
     }
+    (rod, text)
+}
+
+/// Three trials of eight loads along z read every 20 s; from 250 s on all sensors are off by what
+/// decays within 60 s.
+#[test]
+fn what_sets_in_suddenly_and_decays() {
+    let (rod, text) = along_z(|k, load| {
+        let time = 20.0 * k as f64;
+        (time, load, if time < 250.0 { 0.0 } else { (-(time - 250.0) / 60.0).exp() })
+    });
     let answer = Answer::of(Some(rod), &text);
     let headline = answer.json["headline"].as_str().unwrap();
     assert_eq!(answer.effects(), [""; 0], "{headline}");

@@ -100,7 +100,9 @@ effects! {
     SensorRipple = "sensor ripple",
     SensorSaturation = "sensor saturation",
     SlippingClamp = "clamp that slips little by little",
+    SpeedOfLoading = "speed of loading",
     VaryingWall = "wall that varies along the rod",
+    WearingFriction = "friction that wears",
     // and of calibrations
     BallOutOfRound = "ball out of round",
     LinkTorsion = "link twists with two joints",

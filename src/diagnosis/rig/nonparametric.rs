@@ -26,6 +26,7 @@
 mod along;
 mod before;
 mod cycles;
+mod held_back;
 mod kink;
 mod station;
 mod swing;
@@ -93,17 +94,14 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
             changes[i]
         }));
     }
-    if let Some(loads) = before.loads(data) {
-        entries.extend(curve(
-            LOAD_BEFORE,
-            ALL_DEFLECTIONS,
-            &scaled(&loads),
-            &everything,
-            "percent",
-            SHARE,
-            |i| deflections[i],
-        ));
+    for (along, coordinate) in [(LOAD_BEFORE, before.loads(data)), (SPEED, before.speeds(data))] {
+        let Some(coordinate) = coordinate.map(|values| scaled(&values)) else { continue };
+        entries.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, "percent", SHARE, |i| {
+            deflections[i]
+        }));
     }
+    let levels = by_axis(data, |d| d.drive().abs(), |_| true);
+    entries.extend(held_back::all(data, &before::slopes(data, deflections), &before, &levels));
     entries.extend(swing::of_displays(data, deflections));
     entries.extend(along_the_load(data));
     entries.extend(kink::all(data, deflections));

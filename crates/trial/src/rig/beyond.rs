@@ -11,6 +11,8 @@
 //! | wall that varies along the rod | bending, in 0.6 to 2 waves over its length | 60 % |
 //! | memory of the load before | product of both loads, at the largest | 20 % |
 //! | damped slide | share of a change of the load that is still to come | 100 % |
+//! | friction that wears | share of the largest load, in the last run; three times less in the first | 15 % |
+//! | speed of loading | softer for each decade of speed | 10 % |
 
 use super::bench::Bench;
 use super::draw::direction;
@@ -21,7 +23,7 @@ use rodcal_base::statistics::Random;
 use rodcal_base::units::UM;
 
 /// How many there are, by number.
-pub const BEYOND: usize = 9;
+pub const BEYOND: usize = 11;
 /// Range of the largest size, of the end in the table.
 const LARGEST: (f64, f64) = (0.5, 1.0);
 
@@ -35,6 +37,8 @@ pub fn needs(effect: usize) -> Needs {
         6 => Needs { stations: true, two_axes: true, ..needs },
         7 => Needs { shuffled: true, ..needs },
         8 => Needs { time: true, varied_waits: true, unloading: true, ..needs },
+        9 => Needs { trials: true, unloading: true, ..needs },
+        10 => Needs { time: true, varied_waits: true, ..needs },
         _ => needs,
     }
 }
@@ -72,11 +76,16 @@ pub fn draw(effect: usize, bench: &Bench, random: &mut Random) -> Effect {
             let sign = if happens(random, 0.5) { -1.0 } else { 1.0 };
             Effect::LoadBefore(sign * 0.2 * large)
         }
-        _ => {
+        8 => {
             // as slow as the readings are apart, else nothing of it is seen
             let waits = protocol.loadings.iter().map(|l| l.time - l.changed);
             let shortest = waits.fold(f64::INFINITY, f64::min);
             Effect::Damping { share: large, time: shortest * log_uniform(random, 0.5, 3.0) }
+        }
+        9 => Effect::WearingFriction { first: 0.05 * large * largest, last: 0.15 * large * largest },
+        _ => {
+            let sign = if happens(random, 0.5) { -1.0 } else { 1.0 };
+            Effect::SpeedOfLoading(sign * 0.1 * large)
         }
     }
 }

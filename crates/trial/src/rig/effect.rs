@@ -82,6 +82,11 @@ pub enum Effect {
     LoadBefore(f64),
     /// A damped slide: this share of a change of the load comes late, with this time constant, s.
     Damping { share: f64, time: f64 },
+    /// Friction of a slide that wears: N in the first run, N in the last, growing evenly between.
+    WearingFriction { first: f64, last: f64 },
+    /// A rod that gives way as fast as it is loaded: displacement × (1 + k·log₁₀(1 + |v|/v₀)), v the
+    /// change of the load over the time between two readings, v₀ a thousandth of the largest load per second.
+    SpeedOfLoading(f64),
     /// A clamp that slips little by little: `per_newton`·z, m, along the load, z (N) by the
     /// equation of Bouc and Wen. SimulatedCase to order only.
     SlippingClamp { per_newton: f64, yield_load: f64, sharpness: f64, balance: f64 },
@@ -118,6 +123,8 @@ impl Effect {
             Effect::Waviness { .. } => EffectName::VaryingWall,
             Effect::LoadBefore(_) => EffectName::LoadHistory,
             Effect::Damping { .. } => EffectName::DampedSlide,
+            Effect::WearingFriction { .. } => EffectName::WearingFriction,
+            Effect::SpeedOfLoading(_) => EffectName::SpeedOfLoading,
             Effect::SlippingClamp { .. } => EffectName::SlippingClamp,
         }
     }
@@ -222,7 +229,9 @@ impl Effect {
             Effect::Seat(depth) => vec![("um", depth / UM)],
             Effect::RunningIn { share, loadings } => vec![("share", *share), ("loadings", *loadings)],
             Effect::Saturation { limit, .. } => vec![("limit_um", limit / UM)],
-            Effect::LooseClamp(share) | Effect::LoadBefore(share) => vec![("share", *share)],
+            Effect::LooseClamp(share) | Effect::LoadBefore(share) | Effect::SpeedOfLoading(share) => {
+                vec![("share", *share)]
+            }
             Effect::Oscillation { amplitude, period, .. } => {
                 vec![("um", amplitude.iter().map(|a| a * a).sum::<f64>().sqrt() / UM), ("period_s", *period)]
             }
@@ -230,6 +239,7 @@ impl Effect {
                 vec![("share", *amplitude), ("period_mm", period / MM)]
             }
             Effect::Damping { share, time } => vec![("share", *share), ("time_s", *time)],
+            Effect::WearingFriction { first, last } => vec![("first_n", *first), ("last_n", *last)],
             Effect::SlippingClamp { per_newton, yield_load, .. } => {
                 vec![("um_per_n", per_newton / UM), ("yield_n", *yield_load)]
             }

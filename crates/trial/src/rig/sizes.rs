@@ -110,6 +110,7 @@ impl Effect {
             | Effect::LooseClamp(size)
             | Effect::Waviness { amplitude: size, .. }
             | Effect::LoadBefore(size)
+            | Effect::SpeedOfLoading(size)
             | Effect::Damping { share: size, .. }
             | Effect::SlippingClamp { per_newton: size, .. } => *size *= share,
             Effect::SensorBlock(sizes)
@@ -119,6 +120,10 @@ impl Effect {
                 sizes.iter_mut().for_each(|size| *size *= share)
             }
             Effect::Outlier(cells) => cells.iter_mut().for_each(|(_, size)| *size *= share),
+            Effect::WearingFriction { first, last } => {
+                *first *= share;
+                *last *= share;
+            }
             // a limit has no size of its own
             Effect::Saturation { .. } => {}
         }

@@ -27,11 +27,15 @@ pub(super) struct Along {
     pub is_recording: bool,
 }
 
-const fn along(name: &'static str, follows: &'static str, variable: Variable) -> Along {
+pub(super) const fn along(name: &'static str, follows: &'static str, variable: Variable) -> Along {
     Along { name, follows, variable, is_recording: false }
 }
 
-const fn along_the_recording(name: &'static str, follows: &'static str, variable: Variable) -> Along {
+pub(super) const fn along_the_recording(
+    name: &'static str,
+    follows: &'static str,
+    variable: Variable,
+) -> Along {
     Along { name, follows, variable, is_recording: true }
 }
 
@@ -47,6 +51,8 @@ pub(super) const SINCE_CHANGE: Along = along(
 );
 pub(super) const LOAD_BEFORE: Along =
     along("load before", "follows the load that hung before", Variable::Order);
+pub(super) const SPEED: Along =
+    along("speed of loading", "follows the speed at which the load was changed", Variable::TimeInRun);
 pub(super) const READING: Along = along("reading", "follows the reading itself", Variable::Load);
 pub(super) const TEMPERATURE: Along = along("temperature", "follows the temperature", Variable::Temperature);
 pub(super) const POSITION: Along =

@@ -10,10 +10,13 @@
 //!
 //! and what remembers otherwise shows C·F·h(F′). Both g and h are curves of no law.
 
+use std::collections::HashMap;
+
 use super::super::numbering::numbered;
 use super::along::Coordinate;
 use crate::diagnosis::rig::mechanics::load_history::{dwell, instants, runs};
 use crate::diagnosis::rig::recording::datum::Datum;
+use crate::rig::readings::Direction;
 
 /// Waiting times that differ by less than this factor are the same.
 const SAME_WAIT: f64 = 1.1;
@@ -56,32 +59,64 @@ impl Before {
         (most > SAME_WAIT * least).then(|| wait.iter().map(|t| Some(t.max(least).ln())).collect())
     }
 
+    /// How fast the load was changed to what it is, as a coordinate: arsinh(v/v₀) with
+    /// v = (F − F′)/Δt, Δt from the reading before until it hung (else until it is read), and v₀ the
+    /// slowest; nothing where it is always the same at the same load.
+    pub fn speeds(&self, data: &[Datum]) -> Option<Coordinate> {
+        let times: Vec<f64> = data.iter().map(|d| d.time).collect::<Option<_>>()?;
+        let mut speed = vec![None; data.len()];
+        for run in runs(data) {
+            let instants = instants(data, &run);
+            for pair in instants.windows(2) {
+                for &i in &pair[1] {
+                    let since = data[i].loaded_at.unwrap_or(times[i]) - times[pair[0][0]];
+                    speed[i] = (since > 0.0).then(|| {
+                        f64::from(data[i].direction.sign) * (data[i].drive() - self.load[i]) / since
+                    });
+                }
+            }
+        }
+        let sizes = speed.iter().flatten().map(|v: &f64| v.abs()).filter(|v| *v > 0.0);
+        let slowest = sizes.fold(f64::INFINITY, f64::min);
+        let speeds = speed.iter().map(|v| Some((v.as_ref()? / slowest).asinh())).collect();
+        Some(speeds).filter(|speeds| is_free(data, speeds))
+    }
+
     /// C·(F − F′) of each datum, m: how far the rod deflects between the reading before and this
     /// one.
     pub fn changes(&self, data: &[Datum], deflections: &[f64]) -> Vec<f64> {
-        let line = numbered(data.iter().map(Datum::line_key));
-        let mut slope = vec![0.0; line.iter().max().map_or(0, |last| last + 1)];
-        for ((datum, deflection), &line) in data.iter().zip(deflections).zip(&line) {
-            if datum.drive() != 0.0 {
-                slope[line] = deflection / datum.drive();
-            }
-        }
-        (0..data.len()).map(|i| slope[line[i]] * (data[i].drive() - self.load[i])).collect()
+        let slopes = slopes(data, deflections);
+        (0..data.len()).map(|i| slopes[i] * (data[i].drive() - self.load[i])).collect()
     }
 
-    /// F′ as a coordinate; nothing where it is always the same at the same load, whose curve is
+    /// F′ as a coordinate, positive where it pulled as the load does now: what remembers does not
+    /// know the axes of {T}. Nothing where it is always the same at the same load, whose curve is
     /// then the same.
     pub fn loads(&self, data: &[Datum]) -> Option<Coordinate> {
-        let conditions = numbered(data.iter().map(|d| (d.direction, d.drive().to_bits(), d.phase)));
-        let mut first_of: Vec<usize> = Vec::new();
-        for (i, &condition) in conditions.iter().enumerate() {
-            if condition == first_of.len() {
-                first_of.push(i);
-            }
-        }
-        let is_free = (0..data.len()).any(|i| self.load[first_of[conditions[i]]] != self.load[i]);
-        is_free.then(|| self.load.iter().copied().map(Some).collect())
+        let along = |(datum, before): (&Datum, &f64)| Some(before * f64::from(datum.direction.sign));
+        Some(data.iter().zip(&self.load).map(along).collect()).filter(|loads| is_free(data, loads))
     }
+}
+
+/// Is a coordinate not always the same at the same load?
+fn is_free(data: &[Datum], coordinate: &Coordinate) -> bool {
+    let mut of_load: HashMap<(Direction, u64), f64> = HashMap::new();
+    data.iter().zip(coordinate).any(|(datum, x)| {
+        let load = (datum.direction, datum.drive().to_bits());
+        x.is_some_and(|x| *of_load.entry(load).or_insert(x) != x)
+    })
+}
+
+/// How much each datum deflects by what is driven, m/N: that of its line.
+pub(super) fn slopes(data: &[Datum], deflections: &[f64]) -> Vec<f64> {
+    let line = numbered(data.iter().map(Datum::line_key));
+    let mut slope = vec![0.0; line.iter().max().map_or(0, |last| last + 1)];
+    for ((datum, deflection), &line) in data.iter().zip(deflections).zip(&line) {
+        if datum.drive() != 0.0 {
+            slope[line] = deflection / datum.drive();
+        }
+    }
+    line.into_iter().map(|line| slope[line]).collect()
 }
 
 #[cfg(test)]
@@ -104,9 +139,26 @@ mod tests {
 
     #[test]
     fn loads_that_come_in_one_order_say_nothing_of_the_one_before() {
-        let text = "axis,trial,load_n,dy_um\ny,1,5,10\ny,1,10,20\ny,2,5,10\ny,2,10,20\n";
-        let before = Before::of(&datum::all(&Readings::from_text("f", text).unwrap().rows));
+        let text = "axis,trial,load_n,time_s,dy_um\ny,1,5,0,10\ny,1,10,9,20\ny,2,5,60,10\ny,2,10,69,20\n";
         let data = datum::all(&Readings::from_text("f", text).unwrap().rows);
-        assert!(before.loads(&data).is_none() && before.waits().is_none());
+        let before = Before::of(&data);
+        assert!(before.loads(&data).is_none() && before.waits().is_none() && before.speeds(&data).is_none());
+    }
+
+    #[test]
+    fn the_load_before_pulls_as_the_present_one_and_its_speed_too() {
+        let text = "axis,trial,load_n,phase,time_s,dy_um\n-y,1,5,load,0,10\n-y,1,10,load,10,20\n-y,1,5,unload,30,10\n";
+        let data = datum::all(&Readings::from_text("f", text).unwrap().rows);
+        let before = Before::of(&data);
+        assert_eq!(before.loads(&data), Some(vec![Some(0.0), Some(5.0), Some(10.0)]));
+        // the same load came once from below and once, half as fast, from above
+        let speeds = before.speeds(&data);
+        assert_eq!(speeds, None, "the first load of a run has no speed");
+        let text = format!("{}-y,1,10,load,35,20\n-y,1,5,unload,40,10\n", text);
+        let data = datum::all(&Readings::from_text("f", &text).unwrap().rows);
+        let speeds = Before::of(&data).speeds(&data).unwrap();
+        assert_eq!(speeds[0], None);
+        let expected = [2.0f64, -1.0, 4.0, -4.0].map(|v| Some(v.asinh()));
+        assert_eq!(speeds[1..], expected);
     }
 }

@@ -20,6 +20,8 @@ impl Bench {
                 Effect::Hysteresis { fraction, is_exercised } => self.lag(&mut felt, fraction, is_exercised),
                 Effect::Damping { share, time } => self.damp(&mut felt, share, time),
                 Effect::LoadBefore(share) => self.follow_load_before(&mut felt, share),
+                Effect::WearingFriction { first, last } => self.wear(&mut felt, first, last),
+                Effect::SpeedOfLoading(share) => self.hurry(&mut felt, share),
                 _ => {}
             }
         }
@@ -114,6 +116,41 @@ impl Bench {
             if loadings[index - 1].run == loadings[index].run {
                 felt[index] *= 1.0 + share * hanging[index - 1] / self.full_scale;
             }
+        }
+    }
+
+    /// Friction as in [`Bench::rub`], without presliding, of another force in each run.
+    fn wear(&self, felt: &mut [f64], first: f64, last: f64) {
+        let (mut hung, mut held) = (0.0, 0.0f64);
+        let loadings = &self.protocol.loadings;
+        let runs = loadings.iter().map(|l| l.run).max().unwrap_or(0).max(1) as f64;
+        for (index, loading) in loadings.iter().enumerate() {
+            if self.is_first(index) {
+                (hung, held) = (0.0, 0.0);
+            }
+            let hanging = felt[index];
+            let force = first + (last - first) * loading.run as f64 / runs;
+            let carried = match hanging - hung {
+                change if change > 0.0 => (hanging - force).max(held).min(hanging),
+                change if change < 0.0 => (hanging + force).min(held),
+                _ => held,
+            };
+            (hung, held) = (hanging, if loading.load == 0.0 { 0.0 } else { carried });
+            felt[index] = held;
+        }
+    }
+
+    /// A rod that is loaded fast gives way by another share.
+    fn hurry(&self, felt: &mut [f64], share: f64) {
+        let (hanging, loadings) = (felt.to_vec(), &self.protocol.loadings);
+        for index in 1..felt.len() {
+            let (loading, before) = (&loadings[index], &loadings[index - 1]);
+            if self.is_first(index) || before.run != loading.run {
+                continue;
+            }
+            let took = (loading.time - before.time).max(1.0);
+            let speed = (hanging[index] - hanging[index - 1]).abs() / took;
+            felt[index] *= 1.0 + share * (1.0 + speed / (1e-3 * self.full_scale)).log10();
         }
     }
 

@@ -97,6 +97,30 @@ fn softer_is_more() {
 }
 
 #[test]
+fn friction_that_wears_holds_more_back_in_every_run() {
+    let (bench, mut expected) = (bench(), [0.1, 0.2].into_iter());
+    let c = bench.compliance()[1];
+    let (clean, with) =
+        (bench.readings(&[]), bench.readings(&[Effect::WearingFriction { first: 0.1, last: 0.3 }]));
+    // the first load up and the last one down of the first two of three runs
+    for run in [0, 6] {
+        let force = expected.next().unwrap();
+        let change = |loading: usize| with[3 * loading + 1] - clean[3 * loading + 1];
+        assert!((change(run) / (-force * c) - 1.0).abs() < 0.01, "{force}");
+        assert!((change(run + 4) / (force * c) - 1.0).abs() < 0.01, "{force}");
+    }
+}
+
+#[test]
+fn a_rod_that_is_loaded_faster_gives_way_by_its_decade() {
+    let change = added(Effect::SpeedOfLoading(0.1), 1);
+    // 2 N in 60 s of 6 N at most: 5.56 times the speed that counts
+    let share = 0.1 * (1.0 + 2.0 / 60.0 / 0.006f64).log10();
+    let expected = share * 4.0 * bench().compliance()[1];
+    assert!(change[0] == 0.0 && (change[1] / expected - 1.0).abs() < 0.02, "{change:?} {expected}");
+}
+
+#[test]
 fn an_unloaded_rod_still_recovers_from_creep_and_hysteresis() {
     let creep = added(Effect::Creep { per_decade: 0.03, shortest: 1.0 }, 1);
     assert!(creep[5] > 0.0 && creep[5] < creep[2]);

@@ -129,7 +129,7 @@ fn for_good(data: &[Datum], size: f64) -> Vec<Entry> {
         let last_of_run: BTreeMap<usize, usize> = sequence.iter().map(|&i| (data[i].run, i)).collect();
         let mut last_of_run: Vec<usize> = last_of_run.into_values().collect();
         last_of_run.sort_by_key(|&last| data[last].order);
-        let mut rows: Vec<usize> = last_of_run.iter().skip(1).rev().skip(2).copied().collect();
+        let mut rows: Vec<usize> = last_of_run.iter().rev().skip(1).copied().collect();
         if sequence.len() <= MOST_ROWS_WITHIN {
             let ends = [sequence.first(), sequence.last()].map(|end| end.map(|&i| data[i].run));
             let is_within = |rows: &&[usize]| {

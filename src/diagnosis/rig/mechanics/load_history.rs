@@ -9,7 +9,7 @@ mod tests;
 pub use self::creep::{Changed, Clock, Onset, creep, is_stated, onsets};
 pub use self::hysteresis::{Loop, hysteresis};
 use self::memory::none;
-pub use self::memory::{Memory, dwell, instants, moments, runs};
+pub use self::memory::{Memory, dwell, instants, moments, runs, shortest};
 use crate::diagnosis::rig::recording::datum::Datum;
 
 /// Which law a memory follows.

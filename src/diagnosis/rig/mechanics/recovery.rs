@@ -14,7 +14,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::load_history::{Changed, dwell, moments, runs};
+use super::load_history::{Changed, dwell, moments, runs, shortest};
 use crate::diagnosis::rig::numbering::numbered;
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::spatial::Axis;
@@ -39,7 +39,7 @@ pub fn recovery(data: &[Datum], when: Changed, t0: f64, stiffness: f64) -> Optio
     if data.iter().any(|d| d.imposed.is_some()) {
         return None;
     }
-    let (dwell, runs) = (dwell(data, &times), runs(data));
+    let (dwell, shortest, runs) = (dwell(data, &times), shortest(data, &times), runs(data));
     let places = numbered(data.iter().map(|d| (d.direction.axis, d.load_station.map(f64::to_bits))));
     let shown = Shown::of(data, &places, stiffness);
     let grown = |now: f64, since: f64| (1.0 + (now - since).max(0.0) / t0).log10();
@@ -73,7 +73,8 @@ pub fn recovery(data: &[Datum], when: Changed, t0: f64, stiffness: f64) -> Optio
         }
         let (mut load, mut changed) = (0.0, zero);
         for moment in &own {
-            let since = if moment.hung.is_nan() { when.between(changed, moment.time) } else { moment.hung };
+            let since =
+                if moment.hung.is_nan() { when.between(changed, moment.time, shortest) } else { moment.hung };
             changes.push(Change { time: since, force: moment.load - load, place, session });
             (load, changed) = (moment.load, moment.time);
         }

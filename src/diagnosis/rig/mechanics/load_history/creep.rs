@@ -1,6 +1,6 @@
 //! Creep: since when each load has hung, and how far that has gone.
 
-use super::memory::{Memory, dwell, moments, none, runs};
+use super::memory::{Memory, dwell, moments, none, runs, shortest};
 use crate::diagnosis::rig::recording::datum::Datum;
 
 /// Since when a reading has crept.
@@ -35,26 +35,35 @@ pub enum Changed {
     Midway,
     /// Right before the other.
     Late,
+    /// So many quarters of the shortest time between two readings before each reading: whoever hangs
+    /// a load waits about as long every time.
+    Waited(u8),
 }
 
 impl Changed {
     /// The time of the change between readings at two times, s.
-    pub fn between(self, before: f64, after: f64) -> f64 {
+    ///
+    /// `shortest`: between any two readings, s.
+    pub fn between(self, before: f64, after: f64, shortest: f64) -> f64 {
         match self {
             Changed::Early => before,
             Changed::Midway => 0.5 * (before + after),
             Changed::Late => after,
+            Changed::Waited(quarters) => after - 0.25 * f64::from(quarters) * shortest,
         }
     }
 }
 
 impl Clock {
-    pub const ALL: [Clock; 10] = [
+    pub const ALL: [Clock; 13] = [
         Clock::FirstReading,
         Clock::FirstLoad,
         Clock::EachLoad(Changed::Early),
         Clock::EachLoad(Changed::Midway),
         Clock::EachLoad(Changed::Late),
+        Clock::EachLoad(Changed::Waited(1)),
+        Clock::EachLoad(Changed::Waited(2)),
+        Clock::EachLoad(Changed::Waited(3)),
         Clock::AllLoads(Changed::Early),
         Clock::AllLoads(Changed::Late),
         Clock::ThisLoad,
@@ -75,6 +84,18 @@ impl Clock {
             Clock::EachLoad(Changed::Early) => "since each load",
             Clock::EachLoad(Changed::Midway) => "since each load, hung between two readings",
             Clock::EachLoad(Changed::Late) => "since each load, hung as it was read",
+            Clock::EachLoad(Changed::Waited(1)) => {
+                "since each load, hung a quarter of the shortest wait before it was read"
+            }
+            Clock::EachLoad(Changed::Waited(2)) => {
+                "since each load, hung half of the shortest wait before it was read"
+            }
+            Clock::EachLoad(Changed::Waited(_)) => {
+                "since each load, hung three quarters of the shortest wait before it was read"
+            }
+            Clock::AllLoads(Changed::Waited(_)) => {
+                "since each load, of earlier runs too, hung some time before it was read"
+            }
             Clock::AllLoads(Changed::Early) => "since each load, of earlier runs too",
             Clock::AllLoads(Changed::Midway) => {
                 "since each load, of earlier runs too, hung between two readings"
@@ -140,7 +161,7 @@ pub fn creep(data: &[Datum], clock: Clock, t0: f64) -> Option<Memory> {
     const MOST_CHANGES: usize = 400;
     let times: Vec<f64> = data.iter().map(|d| d.time).collect::<Option<_>>()?;
     times.iter().any(|time| *time != times[0]).then_some(())?;
-    let dwell = dwell(data, &times);
+    let (dwell, shortest) = (dwell(data, &times), shortest(data, &times));
     let zero = times.iter().fold(0.0, |zero: f64, t| zero.min(*t));
     let mut memory = none(data);
     for run in runs(data) {
@@ -169,7 +190,8 @@ pub fn creep(data: &[Datum], clock: Clock, t0: f64) -> Option<Memory> {
                     }
                     let (mut load, mut changed, mut crept) = (0.0, start, 0.0);
                     for earlier in &moments[..=place] {
-                        let since = known(earlier.hung).unwrap_or(when.between(changed, earlier.time));
+                        let since =
+                            known(earlier.hung).unwrap_or(when.between(changed, earlier.time, shortest));
                         crept += (earlier.load - load) * grown(moment.time, since);
                         (load, changed) = (earlier.load, earlier.time);
                     }

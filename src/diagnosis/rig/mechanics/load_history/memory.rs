@@ -60,10 +60,21 @@ pub fn instants(data: &[Datum], run: &[usize]) -> Vec<Vec<usize>> {
 
 /// Usual time between two readings of a run, s: the median; 0 where no run has two times.
 pub fn dwell(data: &[Datum], times: &[f64]) -> f64 {
+    let steps = steps(data, times);
+    steps.get(steps.len() / 2).copied().unwrap_or_default()
+}
+
+/// Shortest time between two readings of a run, s; 0 where no run has two times.
+pub fn shortest(data: &[Datum], times: &[f64]) -> f64 {
+    steps(data, times).first().copied().unwrap_or_default()
+}
+
+/// Times between two readings of a run, s, in ascending order.
+fn steps(data: &[Datum], times: &[f64]) -> Vec<f64> {
     let steps = runs(data)
         .into_iter()
         .flat_map(|run| run.windows(2).map(|pair| times[pair[1]] - times[pair[0]]).collect::<Vec<_>>());
     let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
     steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied().unwrap_or_default()
+    steps
 }

@@ -28,6 +28,15 @@ fn clocks_start_where_they_say() {
 }
 
 #[test]
+fn whoever_waits_as_long_before_every_reading_hung_each_load_so_long_before() {
+    // a quarter of 80 s before the readings at 100, 180 and 300 s
+    let data = data("axis,load_n,time_s,dy_um\n-y,5,100,0\n-y,10,180,0\n-y,15,300,0\n");
+    let third = creep(&data, Clock::EachLoad(Changed::Waited(1)), 1.0).unwrap().relative[2];
+    let expected = (221f64.log10() + 141f64.log10() + 21f64.log10()) / 3.0;
+    assert!((third - expected).abs() < 1e-15, "{third} {expected}");
+}
+
+#[test]
 fn an_unloaded_rod_still_recovers() {
     let memory = creep(&data(TEXT), Clock::EachLoad(Changed::Early), 1.0).unwrap();
     let left = 5.0 * (401f64.log10() + 301f64.log10() - 201f64.log10() - 101f64.log10());

@@ -265,7 +265,8 @@ fn the_pictures_in_the_documents_are_current() {
         sandbox.run(&format!("{command} --out {picture}")).succeeded();
         let shown = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/pictures/{picture}.svg"));
         assert!(
-            sandbox.read(&format!("{picture}/{figure}.svg")) == std::fs::read_to_string(&shown).unwrap_or_default(),
+            sandbox.read(&format!("{picture}/{figure}.svg"))
+                == std::fs::read_to_string(&shown).unwrap_or_default(),
             "docs/pictures/{picture}.svg is not what `rodcal {command}` draws"
         );
     }

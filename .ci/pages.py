@@ -5,8 +5,8 @@
 
 A page fails where the console has an error, something is fetched, the page is wider than the window, a text lies
 over another one in any unit, a picture or a card stays in its unit, a text has less contrast than WCAG AA asks for,
-a picture has no title, or a table is sorted wrongly. All that is folded is opened first. Without Chromium it says so
-and passes.
+a picture has no title, a table is sorted wrongly, or something does not work by keyboard: the cursor of a picture, the
+choice of a unit, the copy of a table. All that is folded is opened first. Without Chromium it says so and passes.
 """
 
 import json
@@ -160,6 +160,48 @@ def sorting(browser, page):
     return found
 
 
+COPIES = """
+navigator.clipboard.writeText = async text => { window.copied = text; };
+document.querySelectorAll('details').forEach(details => { details.open = true; });
+"""
+SHOWN = "[...document.querySelectorAll('%s')].filter(e => e.checkVisibility() && e.getClientRects().length > 0)"
+
+
+def by_keyboard(browser, url):
+    """Complaints about what does not answer to keys on a page at a desk."""
+    found = []
+    browser.complaints(url, 1440, "light")
+    browser.evaluate(COPIES)
+
+    def pressed(selector, key, text=""):
+        """Puts the focus onto the first of these that is seen and presses a key; false where there is none."""
+        if not browser.evaluate(f"(e => {{ e?.focus(); return !!e && document.activeElement === e; }})({SHOWN % selector}[0])"):
+            return False
+        code = {"Enter": 13, "ArrowRight": 39, "ArrowDown": 40}[key]
+        for kind in ("keyDown" if text else "rawKeyDown", "keyUp"):
+            browser.ask("Input.dispatchKeyEvent", type=kind, key=key, code=key, windowsVirtualKeyCode=code, text=text)
+        return True
+
+    if browser.evaluate((SHOWN % "svg[data-panels][tabindex]") + ".length"):
+        read = "[...document.querySelectorAll('output')].map(output => output.textContent).join('')"
+        if not pressed("svg[data-panels][tabindex]", "ArrowRight") or ": " not in browser.evaluate(read):
+            found.append("the cursor of a picture does not move by keyboard")
+        first = browser.evaluate(read)
+        if pressed("svg[data-panels][tabindex]", "ArrowRight") and browser.evaluate(read) == first:
+            found.append("the cursor of a picture stands still")
+    unit = "document.querySelector('th button.unit')?.textContent"
+    before = browser.evaluate(unit)
+    if before is not None and pressed("th button.unit", "Enter", "\r") and browser.evaluate(unit) == before:
+        found.append("a unit is not chosen by keyboard")
+    if browser.evaluate("!!document.querySelector('.files button')"):
+        heads = "document.querySelector('.files button').closest('details').querySelectorAll('thead th').length"
+        pressed(".files button", "Enter", "\r")
+        copied = browser.evaluate("window.copied ?? ''")
+        if copied.count("\n") < 2 or copied.split("\n")[0].count(",") < browser.evaluate(heads) - 1:
+            found.append(f"a table is copied as {copied[:40]!r}")
+    return found
+
+
 class Browser:
     """Chromium by its pipe: one message after another, each ended by a zero byte."""
 
@@ -258,6 +300,9 @@ def main():
         failed += 1
     for page in sys.argv[1:]:
         url = pathlib.Path(page).resolve().as_uri()
+        for complaint in by_keyboard(browser, url):
+            print(f"{page}: {complaint}")
+            failed += 1
         for width, scheme in VIEWS:
             for complaint in browser.complaints(url, width, scheme):
                 print(f"{page}, {width} px, {scheme}: {complaint}")

@@ -19,8 +19,8 @@ def main() -> None:
     # 2. How much it really bends, from readings under known loads
     readings = rodcal.Readings.read("stiffness_data/5.csv")
     fit = rodcal.rig_fit(rod, readings)
-    if fit.r_rod is not None and fit.r_rod_std_error is not None:
-        print(f"r_rod = {fit.r_rod:.3f} ± {fit.r_rod_std_error:.3f}")
+    if fit.r_rod is not None and fit.r_rod_half_width_95 is not None:
+        print(f"r_rod = {fit.r_rod:.3f} ± {fit.r_rod_half_width_95:.3f}")
 
     # 3. Calibrate the robot that the rod was mounted on, with the measured compliance
     campaign = rodcal.Campaign.read("campaigns/tx90-5/campaign.toml")

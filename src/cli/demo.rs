@@ -14,7 +14,9 @@ use rodcal::rod::Rod;
 use rodcal::{Error, Result, files, rig};
 use serde_json::{Value, json};
 
-use super::embedded::{CAMPAIGN, CAMPAIGN_FILE, LOAD_CELL, LOAD_CELL_FILE, RODS, named_by_the_campaign};
+use super::embedded::{
+    CAMPAIGN, CAMPAIGN_FILE, LOAD_CELL, LOAD_CELL_FILE, RECORDED, RODS, named_by_the_campaign,
+};
 use super::output::Outcome;
 
 /// What the numbers of the demo are worth.
@@ -143,7 +145,9 @@ pub fn run() -> Result<Outcome> {
 fn embedded() -> Vec<(String, String)> {
     let of_rods = RODS.iter().flat_map(|e| [(e.rod_file, e.rod), (e.readings_file, e.readings)]);
     let others = [(LOAD_CELL_FILE, LOAD_CELL), (CAMPAIGN_FILE, CAMPAIGN)];
-    of_rods.chain(others).map(|(file, text)| (file.into(), files::sha256(text.as_bytes()))).collect()
+    let recorded = RECORDED.iter().map(|(name, text)| (CAMPAIGN_FILE.replace("campaign.toml", name), *text));
+    let all = of_rods.chain(others).map(|(file, text)| (file.to_owned(), text)).chain(recorded);
+    all.map(|(file, text)| (file, files::sha256(text.as_bytes()))).collect()
 }
 
 /// All pages, as each of them links them.
@@ -186,7 +190,9 @@ fn add(page: &mut Report, heading: &str, part: Report) {
     let gap = if page.headline.is_empty() { "" } else { " " };
     page.headline += &format!("{gap}{heading}: {}", part.headline);
     let labelled = |card: Card| Card { label: format!("{heading}: {}", card.label.to_lowercase()), ..card };
-    page.cards.extend(part.cards.into_iter().take(3).map(labelled));
+    let is_new = |card: &Card| page.cards.iter().all(|own| !own.label.starts_with(&card.label));
+    let new: Vec<Card> = part.cards.into_iter().take(3).filter(is_new).map(labelled).collect();
+    page.cards.extend(new);
     let sections = shown(part.sections, &["before-after", "ranking"]);
     let blocks = sections.into_iter().flat_map(|section| section.blocks).collect();
     page.sections.push(Section::new(heading, blocks));

@@ -34,13 +34,17 @@ pub const CAMPAIGN_FILE: &str = "campaigns/tx90-5/campaign.toml";
 /// Its text.
 pub const CAMPAIGN: &str = include_str!("../../campaigns/tx90-5/campaign.toml");
 
+/// What was recorded for it: names beside the campaign's file, and texts.
+pub const RECORDED: [(&str, &str); 3] = [
+    ("readings.csv", include_str!("../../campaigns/tx90-5/readings.csv")),
+    ("measurements.csv", include_str!("../../campaigns/tx90-5/measurements.csv")),
+    ("validation.csv", include_str!("../../campaigns/tx90-5/validation.csv")),
+];
+
 /// The files that the campaign names, by these names.
 pub fn named_by_the_campaign(name: &str) -> Option<&'static str> {
-    match name {
-        "../../rods/5.toml" => Some(RODS[1].rod),
-        "readings.csv" => Some(include_str!("../../campaigns/tx90-5/readings.csv")),
-        "measurements.csv" => Some(include_str!("../../campaigns/tx90-5/measurements.csv")),
-        "validation.csv" => Some(include_str!("../../campaigns/tx90-5/validation.csv")),
-        _ => None,
+    if name == "../../rods/5.toml" {
+        return Some(RODS[1].rod);
     }
+    RECORDED.iter().find(|(recorded, _)| *recorded == name).map(|(_, text)| *text)
 }

@@ -225,11 +225,9 @@ impl ScoreAnswers {
             |path: &PathBuf| Ok((path.display().to_string(), files::sha256(&files::read_bytes(path)?)));
         let mut inputs = read.iter().map(hashed).collect::<Result<Vec<_>>>()?;
         inputs.retain(|(file, _)| !std::env::args().any(|argument| argument == *file));
-        Ok(Outcome {
-            text: Some(score.text()),
-            inputs,
-            ..Outcome::new(score.json()?, report::report(&score))
-        })
+        let mut report = report::report(&score);
+        report.provenance.extend(sealed.seed().map(|seed| ("seed of the cases".into(), seed.to_string())));
+        Ok(Outcome { text: Some(score.text()), inputs, ..Outcome::new(score.json()?, report) })
     }
 
     /// Makes the measurement that an answer proposes and diagnoses the recording with it.

@@ -12,7 +12,7 @@ use super::table::{Column, Table};
 use super::{Block, Card, Report, Section, Tone};
 use crate::calibration::campaign::Targets;
 use crate::calibration::{Calibration, Campaign, Comparison, Difference, Mode};
-use crate::units::{MM, UM, significant};
+use crate::units::{MM, UM, significant, with_ends};
 
 /// The JSON of `rodcal compare --json`.
 pub fn json(campaign: &Campaign, comparison: &Comparison) -> Value {
@@ -122,15 +122,15 @@ pub fn verdict(campaign: &Campaign, comparison: &Comparison) -> String {
         comparison.differences.iter().filter(|d| d.is_significant).map(better_than).collect();
     let largest = comparison.differences.iter().max_by(|a, b| a.mean.abs().total_cmp(&b.mean.abs()));
     match (better.as_slice(), largest) {
-        ([], Some(d)) => format!(
-            "{name}: no difference between the modes is significant. Mean errors on {on}: {means}; the \
-             largest difference, {} less {}, is {} µm with a 95 % interval of {} to {} µm.",
-            d.mode.name(),
-            d.against.name(),
-            um(d.mean),
-            um(d.interval.0),
-            um(d.interval.1)
-        ),
+        ([], Some(d)) => {
+            let [mean, low, high] = um_with_ends(d.mean, d.interval);
+            format!(
+                "{name}: no difference between the modes is significant. Mean errors on {on}: {means}; the \
+                 largest difference, {} less {}, is {mean} µm with a 95 % interval of {low} to {high} µm.",
+                d.mode.name(),
+                d.against.name()
+            )
+        }
         (better, _) => format!("{name}: {}. Mean errors on {on}: {means}.", better.join("; ")),
     }
 }
@@ -151,14 +151,13 @@ fn better_than(d: &Difference) -> String {
     let (better, worse, sign) =
         if d.mean < 0.0 { (d.mode, d.against, -1.0) } else { (d.against, d.mode, 1.0) };
     let (low, high) = (sign * d.interval.0, sign * d.interval.1);
-    format!(
-        "{} is better than {} by {} µm (95 % interval {} to {} µm)",
-        better.name(),
-        worse.name(),
-        um(d.mean.abs()),
-        um(low.min(high)),
-        um(low.max(high))
-    )
+    let [by, low, high] = um_with_ends(d.mean.abs(), (low.min(high), low.max(high)));
+    format!("{} is better than {} by {by} µm (95 % interval {low} to {high} µm)", better.name(), worse.name())
+}
+
+/// A mean and the ends of its interval, µm.
+fn um_with_ends(mean: f64, (low, high): (f64, f64)) -> [String; 3] {
+    with_ends([mean, low, high].map(|metres| metres / UM), 3).map(|number| number.replace('-', "−"))
 }
 
 /// For sentences, with the true minus.
@@ -259,7 +258,8 @@ fn modes_table(comparison: &Comparison) -> Table {
     columns.extend(["mean", "95 % from", "to", "max", "median", "SD"].map(|name| Column::number(name, "µm")));
     let mut table = Table::new("modes", "Errors of each mode.", columns);
     for (index, calibrated) in comparison.calibrations.iter().enumerate() {
-        let (summary, (low, high)) = (comparison.summary(index), comparison.intervals[index]);
+        let summary = comparison.summary(index);
+        let [mean, low, high] = um_with_ends(summary.mean, comparison.intervals[index]);
         let residual = crate::calibration::Summary::of(&calibrated.residuals());
         let words = match calibrated.mode {
             Mode::None => "assumed rigid",
@@ -267,8 +267,8 @@ fn modes_table(comparison: &Comparison) -> Table {
             Mode::Fea => "beam model",
             Mode::Meas => "measured on a rig",
         };
-        let numbers =
-            [residual.rms, summary.mean, low, high, summary.max, summary.median, summary.sd].map(um).to_vec();
+        let [rms, max, median, sd] = [residual.rms, summary.max, summary.median, summary.sd].map(um);
+        let numbers = vec![rms, mean, low, high, max, median, sd];
         table.row([vec![calibrated.mode.name().to_owned(), words.to_owned()], numbers].concat());
     }
     table
@@ -284,12 +284,13 @@ fn differences_table(comparison: &Comparison) -> Table {
         columns,
     );
     for d in &comparison.differences {
+        let [mean, low, high] = um_with_ends(d.mean, d.interval);
         table.row([
             d.mode.name().to_owned(),
             d.against.name().to_owned(),
-            um(d.mean),
-            um(d.interval.0),
-            um(d.interval.1),
+            mean,
+            low,
+            high,
             if d.is_significant { "yes" } else { "no" }.to_owned(),
         ]);
     }

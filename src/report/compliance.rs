@@ -1,9 +1,11 @@
 //! What the `compliance` command says: JSON, tables and pictures of a [`Study`].
 
+mod known;
 mod laws;
 mod numbers;
 pub(super) mod steps;
 
+use known::{INTERVAL, Known};
 pub(super) use numbers::in_um;
 pub use numbers::{number, rows};
 
@@ -269,18 +271,18 @@ pub fn headline(study: &Study) -> String {
     if let Some(words) = overloaded(study) {
         return words;
     }
-    let c = study.compliance();
     let mode = match study.mode {
         Mode::Calc => "the closed form".to_owned(),
         Mode::Fea => format!("the beam model ({})", physics_name(study)),
     };
+    let known = Known::of(study);
     format!(
         "Rod {} bends at its tip by up to {} µm per newton and {} µm under one g; its compliance index c_rod is {} µm by \
          {mode}.{}",
         study.rod.name,
-        significant(largest_column(&c.force) / UM, 4),
-        significant(largest_column(&c.gravity) / UM, 4),
-        significant(study.index() / UM, 4),
+        known.force,
+        known.gravity,
+        known.index,
         laws::sentence(study)
     )
 }
@@ -344,38 +346,25 @@ fn cards(study: &Study) -> Vec<Card> {
         };
         return vec![Card::new("Largest stress", megapascals(found.stress), limit)];
     }
-    let c = study.compliance();
-    let um = |length: f64| significant(length / UM, 4);
+    let known = Known::of(study);
     let mode = match study.mode {
         Mode::Calc => "closed form",
         Mode::Fea => "beam model",
     };
     let mut cards = vec![
-        Card::new("Compliance index c_rod", format!("{} µm", um(study.index())), mode),
+        Card::new("Compliance index c_rod", format!("{} µm", known.index), mode),
         Card::new(
             "Tip per newton, at most",
-            format!("{} µm/N", um(largest_column(&c.force))),
+            format!("{} µm/N", known.force),
             "contact force along the worst axis",
         ),
-        Card::new(
-            "Tip under one g, at most",
-            format!("{} µm", um(largest_column(&c.gravity))),
-            "weight of rod and tip",
-        ),
+        Card::new("Tip under one g, at most", format!("{} µm", known.gravity), "weight of rod and tip"),
     ];
-    cards.extend(study.shape.modes.first().map(|mode| {
-        Card::new(
-            "First natural frequency",
-            format!("{} Hz", significant(mode.frequency, 3)),
-            "clamped at the flange",
-        )
-    }));
+    let frequency = known
+        .frequency
+        .map(|hz| Card::new("First natural frequency", format!("{hz} Hz"), "clamped at the flange"));
+    cards.extend(frequency);
     cards
-}
-
-/// The largest deflection a load along one axis causes.
-fn largest_column(matrix: &Matrix3<f64>) -> f64 {
-    matrix.column_iter().fold(0.0, |max, column| column.norm().max(max))
 }
 
 /// Both matrices of a compliance as one table.

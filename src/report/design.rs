@@ -21,7 +21,7 @@ use super::table::{Column, Table};
 use super::{Block, Report, Section};
 use crate::design::{Design, Figure, Figures, Goal, Impossible, Limit, Shown, Study};
 use crate::rod::NominalNumber;
-use crate::units::significant;
+use crate::units::{significant, with_uncertainty};
 
 /// The JSON of `rodcal design rod --json`, all but the front ([`front_json`]).
 pub fn json(study: &Study) -> Value {
@@ -341,10 +341,7 @@ fn front_table(study: &Study) -> Table {
 fn known(shown: &Shown, figure: Figure) -> String {
     let Some(value) = shown.design.figures.get(figure) else { return "–".into() };
     let half = shown.intervals.half.get(figure).unwrap_or(0.0);
-    match half > 0.0 {
-        true => format!("{} ± {}", significant(value, DIGITS), significant(half, 2)),
-        false => significant(value, DIGITS),
-    }
+    with_uncertainty(value, half, DIGITS)
 }
 
 /// `2, 3, 5 and 4 more`.

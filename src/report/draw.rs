@@ -33,7 +33,7 @@ impl Figure {
     /// The figure as an SVG document, 760 CSS pixels wide. It holds no ids, so many fit into one
     /// page; the caption becomes its description, for screen readers, and is not drawn.
     pub fn svg(&self) -> String {
-        draw(self, Medium::File)
+        draw(self, Medium::File).svg
     }
 }
 
@@ -54,8 +54,16 @@ impl Medium {
     }
 }
 
+/// A figure as it is drawn.
+pub(super) struct Drawing {
+    /// The SVG document.
+    pub svg: String,
+    /// Higher than wide: on paper it has a sheet to itself.
+    pub is_high: bool,
+}
+
 /// The figure as an SVG document for a medium.
-pub(super) fn draw(figure: &Figure, medium: Medium) -> String {
+pub(super) fn draw(figure: &Figure, medium: Medium) -> Drawing {
     let columns = match medium {
         Medium::Telephone => 1,
         Medium::File | Medium::Page => figure.columns.clamp(1, figure.panels.len().max(1)),
@@ -85,7 +93,7 @@ pub(super) fn draw(figure: &Figure, medium: Medium) -> String {
     if let Some(legend) = shared {
         legend.draw(&mut canvas, [EDGE_PX, top]);
     }
-    canvas.finish(&spoken_title(figure), &figure.caption)
+    Drawing { svg: canvas.finish(&spoken_title(figure), &figure.caption), is_high: height > full_width }
 }
 
 /// What the panels are called; where none has a title, what the picture is by its caption's first

@@ -104,12 +104,26 @@ fn cards(cards: &[Card]) -> Markup {
             @for card in cards {
                 li class=(class(card.tone)) {
                     span.label { (card.label) }
-                    span.value { (card.value) }
+                    span.value { (unbroken(&card.value)) }
                     @if !card.detail.is_empty() { span.detail { (card.detail) } }
                 }
             }
         }
     }
+}
+
+/// The same with no break between a number and its unit.
+fn unbroken(value: &str) -> String {
+    let mut unbroken = String::with_capacity(value.len());
+    let mut letters = value.chars().peekable();
+    let mut last = ' ';
+    while let Some(letter) = letters.next() {
+        let is_before_unit = letters.peek().is_some_and(|next| next.is_alphabetic() || *next == '%');
+        let is_joint = letter == ' ' && last.is_ascii_digit() && is_before_unit;
+        unbroken.push(if is_joint { '\u{a0}' } else { letter });
+        last = letter;
+    }
+    unbroken
 }
 
 fn warnings(warnings: &[String]) -> Markup {
@@ -217,14 +231,15 @@ fn section_markup(
 }
 
 fn figure_markup(beside: Beside, figure: &Figure, number: usize) -> Markup {
+    let wide = draw(figure, Medium::Page);
     html! {
         figure {
             // Our own SVG: its texts are escaped where it is drawn, and it holds no ids. One of the
             // two is seen.
-            div.picture role="group" aria-label=(format!("Figure {number}")) {
+            div.picture.high[wide.is_high] role="group" aria-label=(format!("Figure {number}")) {
                 @if let Beside::Files(_) = beside {
-                    (PreEscaped(draw(figure, Medium::Page)))
-                    (PreEscaped(draw(figure, Medium::Telephone)))
+                    (PreEscaped(wide.svg))
+                    (PreEscaped(draw(figure, Medium::Telephone).svg))
                 } @else {
                     (PreEscaped(figure.svg()))
                 }
@@ -301,6 +316,13 @@ mod tests {
         let html = |text: &str| with_code(text).into_string();
         assert_eq!(html("no column `time_s` <x>"), "no column <code>time_s</code> &lt;x&gt;");
         assert_eq!(html("a ` b"), "a ` b");
+    }
+
+    #[test]
+    fn a_number_is_not_parted_from_its_unit() {
+        assert_eq!(unbroken("748 µm → 46.1 µm"), "748\u{a0}µm → 46.1\u{a0}µm");
+        assert_eq!(unbroken("402 ± 14 µm"), "402 ± 14\u{a0}µm");
+        assert_eq!(unbroken("not evaluated"), "not evaluated");
     }
 
     #[test]

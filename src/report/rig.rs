@@ -13,7 +13,7 @@ use crate::rig::readings::Readings;
 use crate::rig::{Fit, Measured};
 use crate::rod::Rod;
 use crate::statistics::Estimate;
-use crate::units::{MM, UM, significant};
+use crate::units::{MM, UM, decimals_of, fixed, significant};
 
 /// The JSON of `rodcal rig fit --json`.
 pub fn json(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Value {
@@ -160,24 +160,18 @@ fn interval(estimate: &Estimate) -> String {
 /// The value with as many decimals as the ends of its interval have. No standard error beside it:
 /// a ± would be read as that interval.
 fn as_known(estimate: &Estimate) -> String {
-    match estimate.half_width_95().and_then(decimals) {
-        Some(decimals) => format!("{:.decimals$}", estimate.value),
+    match estimate.half_width_95().and_then(decimals_of) {
+        Some(decimals) => fixed(estimate.value, decimals),
         None => four(estimate.value),
     }
 }
 
 /// The ends of an interval, to two significant digits of half its width.
 fn ends(value: f64, half: f64) -> String {
-    match decimals(half) {
-        Some(decimals) => format!("{:.decimals$} to {:.decimals$}", value - half, value + half),
+    match decimals_of(half) {
+        Some(decimals) => format!("{} to {}", fixed(value - half, decimals), fixed(value + half, decimals)),
         None => format!("{} to {}", four(value - half), four(value + half)),
     }
-}
-
-/// Of two significant digits of half an interval's width.
-fn decimals(half: f64) -> Option<usize> {
-    let is_wide = half > 0.0 && half.is_finite();
-    is_wide.then(|| (1 - half.log10().floor() as i32).clamp(0, 12) as usize)
 }
 
 fn four(value: f64) -> String {
@@ -263,7 +257,7 @@ fn lines_table(fit: &Fit) -> Table {
     table
 }
 
-/// An estimate in its unit, with the digits that its standard error deserves.
+/// An estimate in its unit, with the digits that its 95 % interval deserves.
 fn known(estimate: &Estimate, unit: f64) -> String {
     estimate.show(unit).split(' ').next().unwrap_or_default().to_owned()
 }

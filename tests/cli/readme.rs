@@ -251,15 +251,23 @@ fn the_answers_in_the_guides_are_current() {
     }
 }
 
-/// The README's picture is what the program draws today. To renew it: `rodcal rig fit rods/5.toml
-/// stiffness_data/5.csv --out DIR`, then copy the first figure.
+/// The pictures of README.md and of the gallery are what the program draws today. To renew one: run
+/// its command with `--out DIR`, then copy the figure.
 #[test]
-fn the_picture_in_the_readme_is_current() {
+fn the_pictures_in_the_documents_are_current() {
     let sandbox = Sandbox::new();
-    sandbox.run("rig fit rods/5.toml stiffness_data/5.csv --out report").succeeded();
-    let shown = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/pictures/load-deflection-5.svg");
-    assert!(
-        sandbox.read("report/figure-1-load-deflection.svg") == std::fs::read_to_string(shown).unwrap(),
-        "docs/pictures/load-deflection-5.svg is not what the program draws"
-    );
+    for (command, figure, picture) in [
+        ("rig fit rods/5.toml stiffness_data/5.csv", "figure-1-load-deflection", "load-deflection-5"),
+        ("compliance rods/2.toml", "figure-3-shape-force", "shape-2"),
+        ("calibrate campaigns/tx90-5/campaign.toml", "figure-1-error-distribution", "errors-tx90"),
+        ("design rod examples/small-arm.toml", "figure-2-to-scale", "designs"),
+    ] {
+        sandbox.run(&format!("{command} --out {picture}")).succeeded();
+        let shown = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/pictures/{picture}.svg"));
+        assert!(
+            sandbox.read(&format!("{picture}/{figure}.svg"))
+                == std::fs::read_to_string(&shown).unwrap_or_default(),
+            "docs/pictures/{picture}.svg is not what `rodcal {command}` draws"
+        );
+    }
 }

@@ -15,6 +15,8 @@ fn a_trial_is_made_answered_in_pieces_and_scored() {
     assert_eq!((&answered["answered"], &answered["answered_before"]), (&1.into(), &2.into()));
     assert_eq!(sandbox.read("t/answers.jsonl").lines().count(), 3);
     let score = sandbox.run("trial score t t.key.jsonl --json").json();
+    sandbox.run("trial score t t.key.jsonl --out page").succeeded();
+    assert!(sandbox.read("page/index.html").contains("<dt>seed of the cases</dt><dd>3</dd>"));
     let count = |kind: &str| score[kind]["n"].as_u64().unwrap();
     let rate = |kind: &str, rate: &str| score[kind][rate]["of"].as_u64().unwrap();
     let files = rate("mistakes", "named") + rate("suspects", "remarked");

@@ -120,9 +120,67 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{value:.decimals$}")
 }
 
+/// Less is written with a power of ten.
+const LEAST_UNCERTAINTY: f64 = 1e-9;
+
+/// Decimals that two significant digits of an uncertainty take (GUM, JCGM 100:2008, 7.2.6); `None`
+/// of what is no uncertainty, or too small to be written without a power of ten.
+pub fn decimals_of(uncertainty: f64) -> Option<usize> {
+    let is_one = uncertainty >= LEAST_UNCERTAINTY && uncertainty.is_finite();
+    is_one.then(|| (1 - uncertainty.log10().floor() as i32).max(0) as usize)
+}
+
+/// With so many decimals; no minus before a zero.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    let number = format!("{value:.decimals$}");
+    let is_zero = !number.chars().any(|c| ('1'..='9').contains(&c));
+    if is_zero { number.trim_start_matches('-').to_owned() } else { number }
+}
+
+/// `33.02 ± 0.18`: the uncertainty to two significant digits, the value to the same place; without
+/// an uncertainty the value to so many digits.
+///
+/// ```
+/// use rodcal_base::units::with_uncertainty;
+///
+/// assert_eq!(with_uncertainty(33.0213, 0.183, 5), "33.02 ± 0.18");
+/// assert_eq!(with_uncertainty(33.0213, 0.0, 5), "33.021");
+/// ```
+pub fn with_uncertainty(value: f64, uncertainty: f64, digits: usize) -> String {
+    match decimals_of(uncertainty) {
+        Some(decimals) => format!("{} ± {}", fixed(value, decimals), fixed(uncertainty, decimals)),
+        None => significant(value, digits),
+    }
+}
+
+/// A value and the ends of its interval, to the place of the second digit of half its width; of an
+/// interval without a width to so many digits.
+///
+/// ```
+/// use rodcal_base::units::with_ends;
+///
+/// assert_eq!(with_ends([-1.068, -5.18, 7.83], 3), ["-1.1", "-5.2", "7.8"]);
+/// assert_eq!(with_ends([1.5, 1.5, 1.5], 3), ["1.50", "1.50", "1.50"]);
+/// ```
+pub fn with_ends([value, low, high]: [f64; 3], digits: usize) -> [String; 3] {
+    let decimals = decimals_of((high - low) / 2.0);
+    [value, low, high].map(|x| decimals.map_or_else(|| significant(x, digits), |decimals| fixed(x, decimals)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_value_ends_where_its_uncertainty_ends() {
+        assert_eq!(with_uncertainty(0.0041233, 6.6e-6, 4), "0.0041233 ± 0.0000066");
+        assert_eq!(with_uncertainty(1234.5, 183.0, 4), "1234 ± 183");
+        assert_eq!(with_uncertainty(-0.004, 0.13, 4), "0.00 ± 0.13");
+        assert_eq!(with_uncertainty(1.651e-14, 3e-15, 4), "1.651e-14");
+        for none in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(with_uncertainty(33.0213, none, 3), "33.0");
+        }
+    }
 
     #[test]
     fn significant_digits_are_those_a_reader_expects() {

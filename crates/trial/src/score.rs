@@ -36,6 +36,7 @@ use super::answers::{self, Answer};
 use super::archive::Manifest;
 use super::effect_name::EffectName;
 use super::ground_truth::{GroundTruth, Kind};
+use super::seed::Seed;
 
 /// A key and answers that belong to one trial.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,6 +48,11 @@ pub struct Sealed {
 }
 
 impl Sealed {
+    /// What all cases were drawn from; `None` of a key of a former version.
+    pub fn seed(&self) -> Option<Seed> {
+        self.truths.iter().find_map(|truth| truth.seed)
+    }
+
     /// What was proposed for the cases whose answer is ambiguous and holds the truth, by case.
     pub fn pending(&self) -> Vec<PendingFollowUp> {
         answered(&self.truths, &self.given).iter().filter_map(PendingFollowUp::of).collect()

@@ -237,6 +237,13 @@ impl Finding {
         others
     }
 
+    /// The estimate of its place, where that is a number that was fitted: where it is, and between
+    /// which ends.
+    pub fn place_estimate(&self) -> Option<&Estimate> {
+        let Location::Station(at) = self.location else { return None };
+        self.estimates.iter().find(|estimate| estimate.value == at)
+    }
+
     /// Other places where the same effect may be as well, likeliest first.
     pub fn other_places(&self) -> Vec<Location> {
         let same = self.others().into_iter().filter(|(effect, _)| *effect == self.effect);

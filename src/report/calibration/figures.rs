@@ -10,12 +10,10 @@ use crate::report::pictures::calibration::{
     residual_vectors, residuals_against, residuals_by_group,
 };
 use crate::robot::{Parameter, ParameterGroup};
-use crate::units::{DEG, MM, UM};
+use crate::units::{DEG, MM, UM, URAD};
 
 /// Width of a 95 % interval in standard errors.
 const INTERVAL: f64 = 1.96;
-/// Milliradian in radians.
-const MRAD: f64 = 1e-3;
 
 fn errors_mm(errors: &[f64]) -> Vec<f64> {
     errors.iter().map(|error| error / MM).collect()
@@ -141,7 +139,7 @@ pub(super) fn corrections(calibration: &Calibration) -> Figure {
             .collect()
     };
     let (lengths, angles) = (CorrectionKind::Length, CorrectionKind::Angle);
-    parameter_corrections(&corrections(lengths, MM), &corrections(angles, MRAD))
+    parameter_corrections(&corrections(lengths, MM), &corrections(angles, URAD))
 }
 
 /// Which axis a correction is drawn on.

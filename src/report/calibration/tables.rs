@@ -5,7 +5,8 @@ use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Calibration, CrossValidation, Estimated, Summary};
 use crate::report::Block;
 use crate::report::table::{Column, Table};
-use crate::units::{DEG, MM, UM, significant};
+use crate::robot::Parameter;
+use crate::units::{DEG, MM, UM, decimals_of, fixed, significant};
 
 pub(super) const PARAMETERS_NOTE: &str = "Names are those of the Hayati table: theta, d, a, alpha, \
      beta of each link; c is a joint's compliance, base_* the position of {0} in {W}, base_r* the \
@@ -13,6 +14,9 @@ pub(super) const PARAMETERS_NOTE: &str = "Names are those of the Hayati table: t
      Standard errors follow from the scatter of the residuals, unless the campaign states the noise. \
      \"Not supported\": the correction is smaller than its standard error, so that these poses do not \
      show that the number differs from its nominal value.";
+
+/// Decimals of a number of mm or degrees without a standard error.
+const DECIMALS: usize = 4;
 
 /// A number of micrometres for a table.
 fn um(metres: f64) -> String {
@@ -94,18 +98,15 @@ pub(super) fn parameters(calibration: &Calibration) -> Table {
     for estimate in &calibration.parameters {
         let unit = estimate.parameter.unit();
         let error = estimate.std_error.map(|error| error / unit.si);
-        let decimals = match error.filter(|e| *e > 0.0 && e.is_finite()) {
-            Some(e) => (1.0 - e.log10().floor()).clamp(0.0, 9.0) as usize,
-            None => 4,
-        };
-        let show = |value: f64| without_minus_zero(format!("{:.decimals$}", value / unit.si));
+        let decimals = error.and_then(decimals_of).unwrap_or(DECIMALS);
+        let show = |value: f64| fixed(value / unit.si, decimals);
         table.row([
             estimate.parameter.to_string(),
             unit.symbol.to_owned(),
             show(estimate.nominal),
             show(estimate.value),
             show(estimate.value - estimate.nominal),
-            error.map_or("–".into(), |e| format!("{e:.decimals$}")),
+            error.map_or("–".into(), |e| fixed(e, decimals)),
             match (estimate.identifiable, is_drawn(estimate) && !estimate.is_supported()) {
                 (false, _) => "not identified",
                 (true, true) => "not supported",
@@ -122,15 +123,8 @@ fn is_drawn(estimate: &Estimated) -> bool {
     !estimate.parameter.is_placement()
 }
 
-/// "-0.00" is 0.00.
-fn without_minus_zero(number: String) -> String {
-    match number.chars().any(|c| ('1'..='9').contains(&c)) {
-        true => number,
-        false => number.trim_start_matches('-').to_owned(),
-    }
-}
-
-/// Where the robot stands and where the tip is, all six and three numbers of them.
+/// Where the robot stands and where the tip is, all six and three numbers of them, with the digits
+/// that [`parameters`] has.
 pub(super) fn placement(campaign: &Campaign, calibration: &Calibration) -> Table {
     let mut table = Table::new(
         "placement",
@@ -147,13 +141,29 @@ pub(super) fn placement(campaign: &Campaign, calibration: &Calibration) -> Table
     );
     if matches!(campaign.measurements.targets, Targets::Points(_)) {
         let base = calibration.setup.base();
-        let place = (base.origin / MM).iter().map(|x| format!("{x:.4}")).collect::<Vec<_>>();
-        let turn = base.roll_pitch_yaw().map(|angle| format!("{:.5}", angle / DEG)).to_vec();
+        let place = along_axes(calibration, Parameter::BasePosition, (base.origin / MM).into(), MM);
+        let turn = base.roll_pitch_yaw().map(|angle| angle / DEG);
+        let turn = along_axes(calibration, Parameter::BaseRotation, turn, DEG);
         table.row([vec!["{0} in {W}".to_owned()], place, turn].concat());
     }
-    let tool = (calibration.setup.tool / MM).iter().map(|x| format!("{x:.4}")).collect::<Vec<_>>();
+    let tool = along_axes(calibration, Parameter::Tool, (calibration.setup.tool / MM).into(), MM);
     table.row([vec!["tip in {T}".to_owned()], tool].concat());
     table
+}
+
+/// Three numbers in their unit, each with the decimals of the parameter of its axis; what was not
+/// fitted is known by its file.
+fn along_axes(
+    calibration: &Calibration,
+    of_axis: fn(usize) -> Parameter,
+    values: [f64; 3],
+    unit: f64,
+) -> Vec<String> {
+    let decimals = |axis: usize| {
+        let fitted = calibration.parameters.iter().find(|estimate| estimate.parameter == of_axis(axis))?;
+        decimals_of(fitted.std_error? / unit)
+    };
+    (0..3).map(|axis| fixed(values[axis], decimals(axis).unwrap_or(DECIMALS))).collect()
 }
 
 pub(super) fn correlations(calibration: &Calibration, limit: f64) -> Block {

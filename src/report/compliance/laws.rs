@@ -3,12 +3,13 @@
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
-use super::numbers::{number, rows};
+use super::INTERVAL;
+use super::numbers::{DIGITS, in_um, rows};
 use crate::compliance::{Mode, Study};
 use crate::report::Block;
 use crate::report::table::{Column, Table};
 use crate::rod::{LawConstant, RodLaw};
-use crate::units::{UM, significant};
+use crate::units::{UM, significant, with_uncertainty};
 
 /// All laws of the file, those that the numbers hold with the compliance over the load; null
 /// without one.
@@ -70,17 +71,14 @@ pub fn blocks(study: &Study) -> Vec<Block> {
     let columns = ["11", "22", "33"].map(|entry| Column::number(format!("C^F {entry}"), "µm/N"));
     let mut columns: Vec<Column> = std::iter::once(Column::number("load", "N")).chain(columns).collect();
     columns.push(Column::text(""));
-    let caption = "Deflection over load along each axis of the tool frame, by the size of the load, ± the standard \
-                   uncertainty that the constants of the laws bring with them.";
+    let caption = "Deflection over load along each axis of the tool frame, by the size of the load; ± is half \
+                   of the 95 % interval that the constants of the laws bring with them.";
     let mut table = Table::new("compliance-over-load", caption, columns);
     for load in loads(study) {
         let secant = study.laws.secant(&study.linear, load);
         let mut cells = vec![significant(load, 3)];
         let u = study.laws.secant_uncertainty(&study.linear, load).force.diagonal();
-        let with_u = |(entry, u): (&f64, &f64)| match *u > 0.0 {
-            true => format!("{} ± {}", number(*entry), number(*u)),
-            false => number(*entry),
-        };
+        let with_u = |(entry, u): (&f64, &f64)| with_uncertainty(in_um(*entry), INTERVAL * in_um(*u), DIGITS);
         cells.extend(secant.force.diagonal().iter().zip(u.iter()).map(with_u));
         cells.push(if is_beyond(study, load) { "beyond what was recorded".into() } else { String::new() });
         table.row(cells);

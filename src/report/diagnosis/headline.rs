@@ -99,6 +99,16 @@ fn scatter_of(subject: &Subject) -> String {
     }
 }
 
+/// What the scatter is: measured, or estimated from the residual, which the fit has made smaller
+/// than it.
+pub fn scatter_name(subject: &Subject) -> &'static str {
+    let test = &subject.diagnosis.noise_test;
+    match (test.stated, &subject.diagnosis.lack_of_fit_after) {
+        (None, None) => "scatter, the fitted parameters allowed for:",
+        _ => "scatter",
+    }
+}
+
 /// Zeros that differ far more than readings do: nothing that was looked for, and no agreement
 /// either.
 fn zeros(diagnosis: &Diagnosis) -> Option<String> {

@@ -1,6 +1,6 @@
 //! The body of a diagnosis' report, of a rig or of a calibration.
 
-use super::headline::{RIVALS_SAID, sentence, um};
+use super::headline::{RIVALS_SAID, scatter_name, sentence, um};
 use super::hidden::hidden;
 use super::law;
 use super::subject::Subject;
@@ -65,9 +65,9 @@ fn details(subject: &Subject, index: usize, finding: &Finding) -> String {
     let others: Vec<String> =
         others.iter().skip(RIVALS_SAID).map(|(effect, place)| (effect.cause_at)(place)).collect();
     // a stretch of the rod is said already
-    let places = match finding.estimates.iter().any(|estimate| estimate.name == "station_mm") {
-        true => Vec::new(),
-        false => finding.other_places(),
+    let places = match finding.place_estimate() {
+        Some(_) => Vec::new(),
+        None => finding.other_places(),
     };
     words + &alternatives(&others, &places)
 }
@@ -86,9 +86,13 @@ fn remains(subject: &Subject) -> Section {
     let Some(left) = &subject.remainder else {
         let whose = whose(subject);
         let words = format!(
-            "The residual{whose} is {} µm rms{}; the scatter is {} µm.",
+            "The residual{whose} is {} µm rms{}; the {} {} µm.",
             um(diagnosis.error_after()),
             subject.per,
+            match scatter_name(subject) {
+                "scatter" => "scatter is",
+                estimated => estimated,
+            },
             um(diagnosis.noise)
         );
         return Section::new("What remains", vec![Block::Paragraph(words)]);

@@ -11,7 +11,7 @@ use crate::report::chart::Figure;
 use crate::report::pictures::diagnosis::{Candidate, Class, HeldOut, held_out, ranking as bars, to_one};
 use crate::report::table::{Column, Table};
 use crate::report::{Block, Section};
-use crate::units::{UM, significant};
+use crate::units::{UM, significant, with_ends};
 
 /// Distances from chance, in standard deviations, from which on structure is called weak and
 /// strong.
@@ -55,7 +55,7 @@ pub fn parameters(findings: &[Finding]) -> Table {
         for (k, estimate) in finding.estimates.iter().enumerate() {
             let first = |text: String| if k == 0 { text } else { String::new() };
             let numbers = [estimate.value, estimate.low, estimate.high];
-            let [value, low, high] = numbers.map(|x| significant(x / estimate.unit.si, 4));
+            let [value, low, high] = with_ends(numbers.map(|x| x / estimate.unit.si), 4);
             table.row([
                 first(finding.effect.spoken()),
                 first(finding.location.to_string()),

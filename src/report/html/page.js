@@ -184,7 +184,7 @@
     document.querySelector('main > section').before(bar);
   }
 
-  // a cursor that reads the axes, in all pictures with the same abscissa
+  // a cursor that reads the axes, in all pictures with the same abscissa; by pointer or arrow keys
   const pictures = [...document.querySelectorAll('svg[data-panels]')].map(svg => ({
     svg, panels: JSON.parse(svg.dataset.panels), output: svg.closest('figure').querySelector('output'),
   }));
@@ -202,31 +202,55 @@
     for (const [name, value] of Object.entries(attributes)) line.setAttribute(name, value);
     svg.append(line);
   };
+  const point = (picture, panel, px, py) => {
+    clear();
+    const [left, top, right, bottom] = panel.box;
+    const x = panel.x && at(...panel.x, (px - left) / (right - left));
+    const y = panel.y && at(...panel.y, (bottom - py) / (bottom - top));
+    if (panel.y) rule(picture.svg, left, py, right, py);
+    const read = (label, value, unit) => unit
+      ? `${label.replace(unit, now(unit))}: ${short(value * factor(unit))}` : `${label}: ${short(value)}`;
+    picture.output.textContent = [[panel.xlabel, x, panel.xunit], [panel.ylabel, y, panel.yunit]]
+      .filter(([, value]) => value !== null).map(axis => read(...axis)).join('   ');
+    if (x === null) return;
+    for (const other of pictures) for (const p of other.panels) {
+      if (!p.x || p.xlabel !== panel.xlabel) continue;
+      const own = share(...p.x, x);
+      if (!(own >= 0 && own <= 1)) continue;
+      const along = p.box[0] + own * (p.box[2] - p.box[0]);
+      rule(other.svg, along, p.box[1], along, p.box[3]);
+    }
+  };
+  // by keyboard: in steps of a fiftieth, from panel to panel beyond an edge
+  const STEP = 0.02;
+  const STEPS = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, -STEP], ArrowDown: [0, STEP] };
   for (const picture of pictures) {
+    const panels = picture.panels.filter(panel => panel.x || panel.y);
+    let [which, along, down] = [0, 0.5, 0.5];
+    const show = () => {
+      const [left, top, right, bottom] = panels[which].box;
+      point(picture, panels[which], left + along * (right - left), top + down * (bottom - top));
+    };
+    if (panels.length) picture.svg.tabIndex = 0;
+    picture.svg.addEventListener('blur', clear);
+    picture.svg.addEventListener('keydown', event => {
+      if (event.key === 'Escape') clear();
+      const step = panels.length && STEPS[event.key];
+      if (!step) return;
+      event.preventDefault();
+      [along, down] = [along + step[0], Math.min(Math.max(down + step[1], 0), 1)];
+      const next = which + Math.sign(step[0]);
+      if ((along < 0 || along > 1) && panels[next]) [which, along] = [next, along < 0 ? 1 : 0];
+      along = Math.min(Math.max(along, 0), 1);
+      show();
+    });
     picture.svg.addEventListener('pointerleave', clear);
     picture.svg.addEventListener('pointermove', event => {
-      clear();
       const box = picture.svg.getBoundingClientRect();
       const scale = picture.svg.viewBox.baseVal.width / box.width;
       const [px, py] = [(event.clientX - box.left) * scale, (event.clientY - box.top) * scale];
       const panel = picture.panels.find(p => px >= p.box[0] && px <= p.box[2] && py >= p.box[1] && py <= p.box[3]);
-      if (!panel) return;
-      const [left, top, right, bottom] = panel.box;
-      const x = panel.x && at(...panel.x, (px - left) / (right - left));
-      const y = panel.y && at(...panel.y, (bottom - py) / (bottom - top));
-      if (panel.y) rule(picture.svg, left, py, right, py);
-      const read = (label, value, unit) => unit
-        ? `${label.replace(unit, now(unit))}: ${short(value * factor(unit))}` : `${label}: ${short(value)}`;
-      picture.output.textContent = [[panel.xlabel, x, panel.xunit], [panel.ylabel, y, panel.yunit]]
-        .filter(([, value]) => value !== null).map(axis => read(...axis)).join('   ');
-      if (x === null) return;
-      for (const other of pictures) for (const p of other.panels) {
-        if (!p.x || p.xlabel !== panel.xlabel) continue;
-        const own = share(...p.x, x);
-        if (!(own >= 0 && own <= 1)) continue;
-        const along = p.box[0] + own * (p.box[2] - p.box[0]);
-        rule(other.svg, along, p.box[1], along, p.box[3]);
-      }
+      if (panel) point(picture, panel, px, py); else clear();
     });
   }
 

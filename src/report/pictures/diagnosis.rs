@@ -181,7 +181,7 @@ mod tests {
         };
         let end = Some("end".to_owned());
         // a wide axis goes on beyond the bar, a narrow one cannot
-        let (wide, narrow) = (figure.svg(), draw(&figure, Medium::Telephone));
+        let (wide, narrow) = (figure.svg(), draw(&figure, Medium::Telephone).svg);
         assert!(anchors(&wide, &to_one(-132.0)).contains(&end), "{:?}", anchors(&wide, &to_one(-132.0)));
         assert!(!anchors(&narrow, &to_one(-132.0)).contains(&end), "{:?}", anchors(&narrow, &to_one(-132.0)));
         assert_eq!(anchors(&wide, &to_one(-40.0)), [end]);

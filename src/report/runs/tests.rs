@@ -1,5 +1,7 @@
 //! What stands side by side.
 
+use super::compared::labels;
+use super::picture::{MOST_SHOWN, difference_picture};
 use super::*;
 
 #[test]

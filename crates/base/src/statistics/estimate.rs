@@ -1,7 +1,7 @@
 //! A number with its standard error.
 
 use super::{student_t_quantile, student_t_two_sided_p};
-use crate::units::significant;
+use crate::units::with_uncertainty;
 
 /// An estimated quantity.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,16 +71,10 @@ impl Estimate {
         }
     }
 
-    /// "33.02 ± 0.07" in `unit` (the SI value of one of it), the standard error with two digits.
+    /// "33.02 ± 0.18" in `unit` (the SI value of one of it): half of the 95 % interval, as ± is
+    /// wherever people read it.
     pub fn show(&self, unit: f64) -> String {
-        let value = self.value / unit;
-        match self.std_error.map(|error| error / unit).filter(|e| e.is_finite() && *e > 0.0) {
-            Some(error) => {
-                let decimals = (1 - error.log10().floor() as i32).clamp(0, 12) as usize;
-                format!("{value:.decimals$} ± {error:.decimals$}")
-            }
-            None => significant(value, 5),
-        }
+        with_uncertainty(self.value / unit, self.half_width_95().unwrap_or(0.0) / unit, 5)
     }
 }
 
@@ -119,9 +113,10 @@ mod tests {
 
     #[test]
     fn the_error_decides_how_many_digits_are_shown() {
-        assert_eq!(estimate(33.0213, 0.0712, 5).show(1.0), "33.021 ± 0.071");
-        assert_eq!(estimate(1234.5, 71.2, 5).show(1.0), "1234 ± 71");
-        assert_eq!(estimate(33.0213e-6, 0.0712e-6, 5).show(1e-6), "33.021 ± 0.071");
+        // t = 2.571
+        assert_eq!(estimate(33.0213, 0.0712, 5).show(1.0), "33.02 ± 0.18");
+        assert_eq!(estimate(1234.5, 71.2, 5).show(1.0), "1234 ± 183");
+        assert_eq!(estimate(33.0213e-6, 0.0712e-6, 5).show(1e-6), "33.02 ± 0.18");
     }
 
     /// t(0.975, 4) = 2.776 (any table of Student's t).

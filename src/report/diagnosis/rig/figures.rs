@@ -200,10 +200,7 @@ fn located(finding: &Finding, rod: &Rod) -> Option<Located> {
     let (at, between) = match &finding.location {
         Location::Part(Part::Root) | Location::InSession { part: Part::Root, .. } => (0.0, None),
         Location::Part(Part::Bend) => (0.5 * (rod.bend_start() + rod.bend_end()), None),
-        Location::Station(at) => {
-            let station = finding.estimates.iter().find(|estimate| estimate.name == "station_mm");
-            (*at, station.map(|station| (station.low, station.high)))
-        }
+        Location::Station(at) => (*at, finding.place_estimate().map(|place| (place.low, place.high))),
         Location::Named(name) => (rod.joints.iter().find(|joint| &joint.name == name)?.station, None),
         _ => return None,
     };

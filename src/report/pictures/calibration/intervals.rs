@@ -24,15 +24,15 @@ pub struct ParameterCorrection {
     pub note: String,
 }
 
-/// Corrections of lengths (mm) and of angles (mrad), one panel each. A parameter that is not
+/// Corrections of lengths (mm) and of angles (µrad), one panel each. A parameter that is not
 /// identified has an open marker, no interval and a note.
 pub fn parameter_corrections(
     lengths_mm: &[ParameterCorrection],
-    angles_mrad: &[ParameterCorrection],
+    angles_urad: &[ParameterCorrection],
 ) -> Figure {
-    let groups = [("lengths", "correction / mm", lengths_mm), ("angles", "correction / mrad", angles_mrad)];
+    let groups = [("lengths", "correction / mm", lengths_mm), ("angles", "correction / µrad", angles_urad)];
     let mut caption = String::from("Corrections of the nominal parameters with their 95 % intervals.");
-    let row_px = row_px(lengths_mm.len().max(angles_mrad.len()));
+    let row_px = row_px(lengths_mm.len().max(angles_urad.len()));
     let mut panels = Vec::new();
     for (title, label, parameters) in groups.into_iter().filter(|(_, _, parameters)| !parameters.is_empty()) {
         let row = |p: &ParameterCorrection| Row {
@@ -233,7 +233,7 @@ mod tests {
         let figure = parameter_corrections(&lengths, &[parameter("α1", 0.2, 0.1)]);
         assert_eq!(figure.panels.iter().map(dots).collect::<Vec<_>>(), [[1, 1], [1, 0]]);
         let svg = figure.svg();
-        for text in ["correction / µm", "correction / mrad", "not identified", "a1", "α1", "95 % interval"]
+        for text in ["correction / µm", "correction / µrad", "not identified", "a1", "α1", "95 % interval"]
         {
             assert!(svg.contains(text), "{text}\n{svg}");
         }

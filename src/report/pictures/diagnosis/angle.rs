@@ -11,6 +11,12 @@ const ROWS: usize = 4;
 /// Height of a panel, px.
 const HEIGHT: f64 = 150.0;
 
+/// More poses are not drawn one by one.
+const MOST_DOTS: usize = 300;
+/// Bins of their angles, and so many at least from one turn of a curve to the next.
+const BINS: usize = 60;
+const PER_TURN: usize = 3;
+
 /// Error of one joint over its angle.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct AngleError {
@@ -65,13 +71,7 @@ fn panel(joint: &AngleError, which: usize, title: &str) -> Chart {
         });
     }
     chart.marks.push(Mark::Horizontal { at: 0.0, text: String::new() });
-    let points = joint.poses.iter().filter(|pose| drawable(pose[which]));
-    let size = if joint.poses.len() > MANY { CLOUD_PX } else { 2.4 };
-    chart.marks.push(Mark::Points {
-        label: "a pose".into(),
-        points: points.map(|pose| Point { x: pose[0], y: pose[which], error: 0.0 }).collect(),
-        style: Style::nth(0).colour(Colour::Grey).marker(Marker::Dot).size(size),
-    });
+    chart.marks.push(poses(joint, which));
     if has_curve {
         chart.marks.push(Mark::Line {
             label: "finding".into(),
@@ -82,9 +82,80 @@ fn panel(joint: &AngleError, which: usize, title: &str) -> Chart {
     chart
 }
 
+/// A dot for each pose. Of very many the mean and the scatter of neighbours; where the curve turns
+/// so often that means would level it, every so manieth pose.
+fn poses(joint: &AngleError, which: usize) -> Mark {
+    let drawn: Vec<[f64; 2]> = joint
+        .poses
+        .iter()
+        .filter(|pose| drawable(pose[0]) && drawable(pose[which]))
+        .map(|pose| [pose[0], pose[which]])
+        .collect();
+    let dot = |at: &[f64; 2]| Point { x: at[0], y: at[1], error: 0.0 };
+    let style = Style::nth(0).colour(Colour::Grey).marker(Marker::Dot);
+    if drawn.len() <= MOST_DOTS {
+        let size = if joint.poses.len() > MANY { CLOUD_PX } else { 2.4 };
+        let points = drawn.iter().map(dot).collect();
+        return Mark::Points { label: "a pose".into(), points, style: style.size(size) };
+    }
+    if turns(&joint.curve) * PER_TURN > BINS {
+        let step = drawn.len().div_ceil(MOST_DOTS);
+        let points: Vec<Point> = drawn.iter().step_by(step).map(dot).collect();
+        let label = format!("a pose, {} of {}", points.len(), drawn.len());
+        return Mark::Points { label, points, style: style.size(CLOUD_PX) };
+    }
+    let label = "mean of neighbouring poses ± their standard deviation".into();
+    Mark::Points { label, points: binned(&drawn), style: style.size(2.0) }
+}
+
+/// How often a curve turns.
+fn turns(curve: &[[f64; 3]]) -> usize {
+    let steps: Vec<f64> = curve.windows(2).map(|pair| pair[1][1] - pair[0][1]).collect();
+    steps.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count()
+}
+
+/// Means and standard deviations within bins of one width.
+fn binned(points: &[[f64; 2]]) -> Vec<Point> {
+    let (low, high) = extent(points.iter().map(|point| point[0])).unwrap_or((0.0, 1.0));
+    let mut bins: Vec<Vec<&[f64; 2]>> = vec![Vec::new(); BINS];
+    for point in points {
+        let at = BINS as f64 * (point[0] - low) / (high - low).max(f64::MIN_POSITIVE);
+        bins[(at as usize).min(BINS - 1)].push(point);
+    }
+    let of_bin = |bin: &Vec<&[f64; 2]>| {
+        let count = bin.len() as f64;
+        let mean = |k: usize| bin.iter().map(|point| point[k]).sum::<f64>() / count;
+        let (x, y) = (mean(0), mean(1));
+        let square = bin.iter().map(|point| (point[1] - y).powi(2)).sum::<f64>();
+        Point { x, y, error: (square / (count - 1.0).max(1.0)).sqrt() }
+    };
+    bins.iter().filter(|bin| !bin.is_empty()).map(of_bin).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn very_many_poses_are_means_with_their_scatter_or_every_so_manieth() {
+        let error = |q: usize| if q.is_multiple_of(2) { 10.0 } else { -10.0 };
+        let many: Vec<[f64; 3]> = (0..1200).map(|q| [q as f64 / 10.0, error(q), 0.0]).collect();
+        let curve = |waves: f64| {
+            let at = |k: i32| [f64::from(k), (f64::from(k) * waves).sin(), 0.1];
+            (0..120).map(at).collect::<Vec<_>>()
+        };
+        let drawn = |waves: f64| {
+            let joint = AngleError { joint: "joint 1".into(), poses: many.clone(), curve: curve(waves) };
+            let Mark::Points { label, points, .. } = poses(&joint, 1) else { panic!("no points") };
+            (label, points)
+        };
+        let (label, points) = drawn(0.05);
+        assert!(label.starts_with("mean of neighbouring poses"), "{label}");
+        assert_eq!(points.len(), BINS);
+        assert!(points.iter().all(|p| p.y.abs() < 1e-9 && (p.error - 10.0).abs() < 0.5));
+        let (label, points) = drawn(1.0);
+        assert_eq!((label.as_str(), points.len()), ("a pose, 300 of 1200", 300));
+    }
 
     fn joint(after: f64, curve: Vec<[f64; 3]>) -> AngleError {
         AngleError {

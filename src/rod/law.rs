@@ -40,6 +40,8 @@ pub enum LawVariable {
     Reading,
     /// The time since the load was changed.
     SinceChange,
+    /// The change of the load over the time that it took, positive where the load grew.
+    LoadingSpeed,
 }
 
 /// How what went before acts.
@@ -144,7 +146,7 @@ pub(crate) fn should_show(showed: f64, law: impl Fn(f64) -> f64) -> f64 {
 
 impl LawVariable {
     /// All of them.
-    pub const ALL: [LawVariable; 7] = [
+    pub const ALL: [LawVariable; 8] = [
         LawVariable::Load,
         LawVariable::AlongPositive,
         LawVariable::AlongNegative,
@@ -152,6 +154,7 @@ impl LawVariable {
         LawVariable::Moment,
         LawVariable::Reading,
         LawVariable::SinceChange,
+        LawVariable::LoadingSpeed,
     ];
 
     /// In files.
@@ -164,6 +167,7 @@ impl LawVariable {
             LawVariable::Moment => "moment",
             LawVariable::Reading => "reading",
             LawVariable::SinceChange => "time_since_change_s",
+            LawVariable::LoadingSpeed => "loading_speed_n_per_s",
         }
     }
 
@@ -177,6 +181,7 @@ impl LawVariable {
             LawVariable::Moment => "moment",
             LawVariable::Reading => "reading",
             LawVariable::SinceChange => "time since the load was changed",
+            LawVariable::LoadingSpeed => "speed of loading",
         }
     }
 
@@ -188,6 +193,7 @@ impl LawVariable {
             LawVariable::Moment => "M",
             LawVariable::Reading => "y",
             LawVariable::SinceChange => "t",
+            LawVariable::LoadingSpeed => "v",
         }
     }
 
@@ -197,8 +203,17 @@ impl LawVariable {
             LawVariable::Moment => "N·m",
             LawVariable::Reading => "µm",
             LawVariable::SinceChange => "s",
-            _ => "N",
+            LawVariable::LoadingSpeed => "N/s",
+            LawVariable::Load
+            | LawVariable::AlongPositive
+            | LawVariable::AlongNegative
+            | LawVariable::LoadBefore => "N",
         }
+    }
+
+    /// True where values of both signs are usual: a law is odd in it.
+    pub(crate) fn has_both_signs(self) -> bool {
+        matches!(self, LawVariable::Reading | LawVariable::LoadingSpeed)
     }
 
     /// True where a law of this variable may act at a place.
@@ -279,7 +294,10 @@ impl RodLaw {
 
     /// True where the load that hangs now is all it takes to know what the law does.
     pub fn is_static(&self) -> bool {
-        let of_now = !matches!(self.variable, LawVariable::LoadBefore | LawVariable::SinceChange);
+        let of_now = !matches!(
+            self.variable,
+            LawVariable::LoadBefore | LawVariable::SinceChange | LawVariable::LoadingSpeed
+        );
         let [up, down] = [1.0, -1.0].map(|side| self.at(self.range.1, side));
         of_now && self.memory.is_none() && up == down
     }

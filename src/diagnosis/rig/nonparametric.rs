@@ -37,6 +37,7 @@ use std::sync::Arc;
 
 use self::along::*;
 pub(super) use self::before::Before;
+use self::before::by_decade;
 use self::cycles::Cycles;
 use super::effects::entry::{Entry, UNBOUNDED, parameter};
 use super::mechanics::action::{Action, Weights};
@@ -94,7 +95,8 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
             changes[i]
         }));
     }
-    for (along, coordinate) in [(LOAD_BEFORE, before.loads(data)), (SPEED, before.speeds(data))] {
+    let speeds = before.speeds(data).map(|speeds| by_decade(&speeds));
+    for (along, coordinate) in [(LOAD_BEFORE, before.loads(data)), (SPEED, speeds)] {
         let Some(coordinate) = coordinate.map(|values| scaled(&values)) else { continue };
         entries.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, "percent", SHARE, |i| {
             deflections[i]

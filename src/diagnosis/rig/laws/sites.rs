@@ -35,6 +35,8 @@ const OF_A_SIDE: &[Form] = Form::FROM_ANYWHERE;
 const OF_TIME: &[Form] = Form::SINCE_A_START;
 /// From anywhere on: temperature.
 const OF_A_LEVEL: &[Form] = OF_A_SIDE;
+/// Of two signs, and of several decades.
+const OF_A_SPEED: &[Form] = &[Form::Approach, Form::Logarithm, Form::Power, Form::Polynomial(1)];
 /// Times since: they fade.
 const FADING: &[Form] = &[Form::Approach, Form::Decay, Form::Logarithm, Form::Power, Form::Polynomial(1)];
 
@@ -234,6 +236,12 @@ impl Recording<'_> {
             let variable = SiteVariable::OfFile(LawVariable::LoadBefore);
             let values = before.load.iter().map(|load| load.abs()).collect();
             sites.push(share(Part::Rod, variable, own(), values, OF_A_LOAD));
+        }
+        if let Some(speeds) = before.speeds(data) {
+            let variable = SiteVariable::OfFile(LawVariable::LoadingSpeed);
+            // of the first reading of a run nobody knows it
+            let values: Vec<f64> = speeds.into_iter().map(Option::unwrap_or_default).collect();
+            sites.push(share(Part::Rod, variable, own(), values, OF_A_SPEED));
         }
         if let (Some(wait), Some(_)) = (&before.wait, before.waits()) {
             let variable = SiteVariable::OfFile(LawVariable::SinceChange);

@@ -14,7 +14,7 @@ pub fn written(law: &Law, from: &str) -> Option<RodLaw> {
         |own: &LawVariable| own.is_at(&place) && SiteVariable::OfFile(*own).measure() == law.site.variable;
     let variable = LawVariable::ALL.into_iter().find(is_its)?;
     // functions of a variable with two signs are odd
-    let formula = formula(law, variable.symbol(), variable == LawVariable::Reading, 0);
+    let formula = formula(law, variable.symbol(), variable.has_both_signs(), 0);
     let mut written = RodLaw::new(place, variable, formula, constants(law), range(law)).ok()?;
     written.memory = in_file(law.memory);
     written.source = Some(source(law, from));

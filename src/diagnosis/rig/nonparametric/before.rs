@@ -59,27 +59,23 @@ impl Before {
         (most > SAME_WAIT * least).then(|| wait.iter().map(|t| Some(t.max(least).ln())).collect())
     }
 
-    /// How fast the load was changed to what it is, as a coordinate: arsinh(v/v₀) with
-    /// v = (F − F′)/Δt, Δt from the reading before until it hung (else until it is read), and v₀ the
-    /// slowest; nothing where it is always the same at the same load.
-    pub fn speeds(&self, data: &[Datum]) -> Option<Coordinate> {
+    /// How fast the load was changed to what it is, N/s: v = (F − F′)/Δt, positive where it grew, Δt
+    /// from the reading before until it hung, else until it is read. None at the first reading of a
+    /// run; nothing where it is always the same at the same load.
+    pub fn speeds(&self, data: &[Datum]) -> Option<Vec<Option<f64>>> {
         let times: Vec<f64> = data.iter().map(|d| d.time).collect::<Option<_>>()?;
         let mut speed = vec![None; data.len()];
         for run in runs(data) {
             let instants = instants(data, &run);
             for pair in instants.windows(2) {
                 for &i in &pair[1] {
-                    let since = data[i].loaded_at.unwrap_or(times[i]) - times[pair[0][0]];
-                    speed[i] = (since > 0.0).then(|| {
-                        f64::from(data[i].direction.sign) * (data[i].drive() - self.load[i]) / since
-                    });
+                    let (sign, change) = (f64::from(data[i].direction.sign), data[i].drive() - self.load[i]);
+                    let took = data[i].loaded_at.unwrap_or(times[i]) - times[pair[0][0]];
+                    speed[i] = (took > 0.0).then(|| sign * change / took);
                 }
             }
         }
-        let sizes = speed.iter().flatten().map(|v: &f64| v.abs()).filter(|v| *v > 0.0);
-        let slowest = sizes.fold(f64::INFINITY, f64::min);
-        let speeds = speed.iter().map(|v| Some((v.as_ref()? / slowest).asinh())).collect();
-        Some(speeds).filter(|speeds| is_free(data, speeds))
+        Some(speed).filter(|speeds| is_free(data, speeds))
     }
 
     /// C·(F − F′) of each datum, m: how far the rod deflects between the reading before and this
@@ -96,6 +92,13 @@ impl Before {
         let along = |(datum, before): (&Datum, &f64)| Some(before * f64::from(datum.direction.sign));
         Some(data.iter().zip(&self.load).map(along).collect()).filter(|loads| is_free(data, loads))
     }
+}
+
+/// arsinh(v/v₀) of speeds, v₀ the slowest: as many columns for a decade as for the next.
+pub(super) fn by_decade(speeds: &[Option<f64>]) -> Coordinate {
+    let sizes = speeds.iter().flatten().map(|v| v.abs()).filter(|v| *v > 0.0);
+    let slowest = sizes.fold(f64::INFINITY, f64::min);
+    speeds.iter().map(|v| Some((v.as_ref()? / slowest).asinh())).collect()
 }
 
 /// Is a coordinate not always the same at the same load?
@@ -157,8 +160,6 @@ mod tests {
         let text = format!("{}-y,1,10,load,35,20\n-y,1,5,unload,40,10\n", text);
         let data = datum::all(&Readings::from_text("f", &text).unwrap().rows);
         let speeds = Before::of(&data).speeds(&data).unwrap();
-        assert_eq!(speeds[0], None);
-        let expected = [2.0f64, -1.0, 4.0, -4.0].map(|v| Some(v.asinh()));
-        assert_eq!(speeds[1..], expected);
+        assert_eq!(speeds, [None, Some(0.5), Some(-0.25), Some(1.0), Some(-1.0)]);
     }
 }

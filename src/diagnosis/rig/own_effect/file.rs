@@ -153,7 +153,7 @@ fn of_raw(toml: TomlText, text: &str, raw: &RawEffect) -> Result<OwnEffect> {
     let law = Expression::new(raw.law.get_ref(), &names).map_err(|fault| toml.in_formula(&raw.law, fault))?;
     let memory = raw.memory.as_ref().map(|own| memory(toml, own, &parameters)).transpose()?;
     let seen_along: fn(&Location) -> Vec<Variable> = match variable {
-        SiteVariable::Time | SiteVariable::OfFile(LawVariable::SinceChange) => {
+        SiteVariable::Time | SiteVariable::OfFile(LawVariable::SinceChange | LawVariable::LoadingSpeed) => {
             |_| vec![Variable::Time, Variable::TimeInRun]
         }
         SiteVariable::Temperature => |_| vec![Variable::Temperature],

@@ -47,7 +47,6 @@ effects! {
     NonlinearStiffness = "nonlinear_stiffness",
     RootCompliance = "root_compliance",
     SensorMisalignment = "sensor_misalignment",
-    SensorScale = "sensor_scale",
     ShearModulus = "shear_modulus",
     Slip = "slip",
     StiffnessScale = "stiffness_scale",
@@ -55,6 +54,7 @@ effects! {
     Backlash = "backlash",
     JointCompliance = "joint_compliance",
     Outlier = "outlier",
+    SensorScale = "sensor_scale",
     ThermalDrift = "thermal_drift",
     // of calibrations
     BaseShift = "base_shift",

@@ -11,6 +11,7 @@
 //! joint j, ∂tip/∂qⱼ in {W}, τⱼ the torque of all loads beyond it about its axis.
 
 pub(super) mod contact;
+pub(super) mod device;
 pub(super) mod encoders;
 pub(super) mod events;
 pub(super) mod fixture;

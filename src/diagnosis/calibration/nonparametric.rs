@@ -17,6 +17,7 @@
 //! of a link             all beyond a joint turns about any axis of its link by products of two
 //!                       joints' angles
 //! of each clamp         a vector in {W}, or in {T}
+//! of a clamp's sensors  `device.rs`
 //! of a loose tool, of a bearing that runs out   `loose.rs`
 //! of the last moves     `moves.rs`
 //! ```
@@ -24,6 +25,7 @@
 //! for every shape is more likely to be smooth than not.
 
 mod curve;
+mod device;
 mod loose;
 mod moves;
 
@@ -31,14 +33,12 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Vector3};
 
-use self::curve::{SIDES, SIZE, TURN, angle_of, cosine, curve, scaled};
+use self::curve::{AXES, MOST, SIDES, SIZE, TURN, angle_of, cosine, curve, scaled};
 use super::model::Context;
 use super::model::entry::{Column, Entry, linear};
 use super::model::law::Frame;
 use crate::inference::{Parameter, Variable};
 
-/// Cosines along one number, beside the constant.
-const MOST: usize = 6;
 /// The same where a joint turns back: a tooth is worn over a part of a turn.
 const MOST_OF_REVERSAL: usize = 12;
 /// Largest torque below which a joint is not loaded, N·m.
@@ -48,7 +48,6 @@ const LEAST_TORQUE: f64 = 0.1;
 const ORDER: (usize, usize, usize) = (3, 3, 1);
 /// Most frequencies at which something may come back over a recording.
 const RETURNS: usize = 200;
-const AXES: [&str; 3] = ["x", "y", "z"];
 /// What is said of what depends on the orientation.
 const BY_ORIENTATION: &str = "follows how the tool is held";
 
@@ -95,6 +94,7 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
     entries.extend(pairs(context));
     entries.extend(links(context));
     entries.extend(clamps(context));
+    entries.extend(device::all(context));
     entries.extend(loose::all(context));
     entries.extend(moves::all(context));
     entries

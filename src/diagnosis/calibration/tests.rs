@@ -10,6 +10,7 @@ mod happened;
 mod laws;
 mod next;
 mod recorded;
+mod sensors;
 mod transfer;
 mod turned;
 mod unfollowed;

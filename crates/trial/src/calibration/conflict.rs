@@ -1,6 +1,6 @@
 //! Effects that imitate each other, pair by pair.
 
-use super::draw::{clamp_pose, library, spring};
+use super::draw::{clamp_pose, library, sensor, spring};
 use super::effect::Effect;
 use super::setup::Needs;
 use super::site::Site;
@@ -9,11 +9,12 @@ use rodcal_base::statistics::Random;
 use rodcal_base::units::URAD;
 
 /// What is taken for what: either side is concealed in turn.
-const PAIRS: [&str; 4] = [
+const PAIRS: [&str; 5] = [
     "read-back lag or play",
     "tip mass or soft wrist",
     "contact spring or clamp pose",
     "base not level or compliant",
+    "contact spring or sensor scale",
 ];
 /// How compliant a soft wrist is, rad/(N·m).
 const WRIST: (f64, f64) = (30.0 * URAD, 100.0 * URAD);
@@ -43,7 +44,7 @@ impl Conflict {
         match self.pair {
             0 => none,
             1 => Needs { masses: Some(true), rod: true, ..none },
-            2 => Needs { device: Some(0), rod: true, ..none },
+            2 | 4 => Needs { device: Some(0), rod: true, ..none },
             _ => Needs { masses: Some(true), ..none },
         }
     }
@@ -58,8 +59,9 @@ impl Conflict {
                 let joint = site.nominal.len() - 3 + random.index(2);
                 Effect::Compliance { joint, compliance: log_uniform(random, WRIST.0, WRIST.1) }
             }
-            (2, false) => spring(site, 300.0, random),
+            (2 | 4, false) => spring(site, 300.0, random),
             (2, true) => clamp_pose(site, random),
+            (4, true) => sensor(site, 0.2, random),
             (_, false) => library(20, site, random),
             (_, true) => library(21, site, random),
         }

@@ -17,6 +17,7 @@
 //! | `payload_mass`, `tip_mass` | kg, g | 5, 300 |
 //! | `rod_stiffness` | departure of the factor from 1 | 60 % |
 //! | `contact_spring`, `contact_force_variation` | N/mm, N | 0.3, 1 |
+//! | `sensor_scale` | share of a displacement that a device shows too much, or along another axis | 0.2 |
 //! | `thermal_drift` of the whole arm | µm/m per kelvin or per hour | 100 |
 //! | `joint_shift` | µrad | 2000 |
 //! | `gravity_direction`, `gravity_tilt` | degrees, µrad/(N·m) | 5, 5 |
@@ -142,7 +143,11 @@ pub fn library(effect: usize, site: &Site, random: &mut Random) -> Effect {
             let (by, turn) = (direction(random) * size * UM, direction(random) * size * URAD);
             Effect::BaseShift { from: within(site, random), by, turn: turn / most.sqrt() }
         }
-        18 => spring(site, large(random, 300.0), random),
+        // springs and sensors of a device
+        18 => match happens(random, 0.5) {
+            true => spring(site, large(random, 300.0), random),
+            false => sensor(site, large(random, 0.2), random),
+        },
         19 => Effect::Force { group: one_clamp(site, random), by: direction(random) * large(random, 1.0) },
         20 => {
             let (way, size) = (random.uniform(0.0, std::f64::consts::TAU), large(random, 5.0) * DEG);
@@ -190,6 +195,15 @@ fn one_clamp(site: &Site, random: &mut Random) -> Option<usize> {
 /// A spring of so many N/m at the most.
 pub fn spring(site: &Site, rate: f64, random: &mut Random) -> Effect {
     Effect::Spring { group: one_clamp(site, random), rate: either(random) * rate }
+}
+
+/// Sensors that are off by such a share, half of them by cross-talk.
+pub fn sensor(site: &Site, share: f64, random: &mut Random) -> Effect {
+    let shown = random.index(3);
+    let along = if happens(random, 0.5) { shown } else { (shown + 1 + random.index(2)) % 3 };
+    // cross-talk is that of a device that goes from clamp to clamp
+    let group = one_clamp(site, random).filter(|_| shown == along);
+    Effect::Sensor { group, shown, along, more: either(random) * share }
 }
 
 /// A clamp that stands elsewhere.
@@ -240,6 +254,9 @@ pub fn place(effect: &Effect, site: &Site) -> Place {
             Some(group) => Place::named(&site.group_name(*group)),
             None => Place::named("all clamps"),
         },
+        Effect::Sensor { group, shown, along, .. } => {
+            sensor_place(site, *group, (shown == along).then_some(*shown))
+        }
         Effect::Payload(_) => Place::part("flange"),
         Effect::TipMass(_) => Place::part("tip"),
         Effect::Lag { .. } | Effect::MoveHistory(_) => Place::all_joints(),
@@ -256,6 +273,13 @@ pub fn place(effect: &Effect, site: &Site) -> Place {
         Effect::Refraction(_) => Place::part("tracker"),
         Effect::LooseMount(_) => Place::part("tool"),
     }
+}
+
+/// The sensor of one axis in a clamp or in all of them, or all sensors there.
+pub fn sensor_place(site: &Site, group: Option<usize>, axis: Option<usize>) -> Place {
+    let clamp = group.map_or("all clamps".to_owned(), |group| site.group_name(group));
+    let axis = axis.map_or(String::new(), |axis| format!(", axis {}", ["x", "y", "z"][axis]));
+    Place::named(&(clamp + &axis))
 }
 
 /// After the last row of the fixture before it moved.

@@ -7,6 +7,9 @@ use rodcal_base::units::{DEG, GRAM, MM, UM, URAD, URAD_PER_NM};
 
 /// Step of a numerical derivative, of the effect's size; of a phase, rad.
 const STEP: f64 = 1e-4;
+/// Which axis of a device shows something, of a displacement along which one.
+const CROSS: [[&str; 3]; 3] =
+    [["x_per_x", "x_per_y", "x_per_z"], ["y_per_x", "y_per_y", "y_per_z"], ["z_per_x", "z_per_y", "z_per_z"]];
 
 /// Something that is wrong, SI; joints and rows from 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,6 +50,9 @@ pub enum Effect {
     BaseShift { from: usize, by: Vector3<f64>, turn: Vector3<f64> },
     /// The contact force changes with the displacement in a clamp, or in all, N/m.
     Spring { group: Option<usize>, rate: f64 },
+    /// Sensors of a clamp's device, or of all, show along axis `shown` so much more of a
+    /// displacement along axis `along`, of that: a scale where both are one axis, else cross-talk.
+    Sensor { group: Option<usize>, shown: usize, along: usize, more: f64 },
     /// The contact force of a clamp, or of all, is larger by so much, N in its frame.
     Force { group: Option<usize>, by: Vector3<f64> },
     /// The base is not level: gravity is turned about its x and y, rad.
@@ -107,6 +113,7 @@ impl Effect {
             Effect::ToolShift { .. } => EffectName::ToolShift,
             Effect::BaseShift { .. } => EffectName::BaseShift,
             Effect::Spring { .. } => EffectName::ContactSpring,
+            Effect::Sensor { .. } => EffectName::SensorScale,
             Effect::Force { .. } => EffectName::ContactForceVariation,
             Effect::Level(_) => EffectName::GravityDirection,
             Effect::BaseTilt(_) => EffectName::GravityTilt,
@@ -158,6 +165,8 @@ impl Effect {
             }
             Effect::Shift { by, .. } | Effect::ToolShift { by, .. } => three(SHIFT, by, UM),
             Effect::Spring { rate, .. } => vec![("n_per_mm", rate * MM)],
+            Effect::Sensor { shown, along, more, .. } if shown == along => vec![("factor", 1.0 + more)],
+            Effect::Sensor { shown, along, more, .. } => vec![(CROSS[*shown][*along], *more)],
             Effect::Force { by, .. } => three(["x_n", "y_n", "z_n"], by, 1.0),
             Effect::Level([roll, pitch]) => vec![("roll_deg", roll / DEG), ("pitch_deg", pitch / DEG)],
             Effect::BaseTilt(per) => vec![("tilt_urad_per_nm", per / URAD_PER_NM)],
@@ -219,6 +228,7 @@ impl Effect {
             | Effect::Shift { .. }
             | Effect::Outlier(_)
             | Effect::Spring { .. }
+            | Effect::Sensor { .. }
             | Effect::Force { .. } => None,
             Effect::ToolShift { by, .. } => Some(Effect::ToolShift { from: 0, by }),
             Effect::BaseShift { by, turn, .. } => Some(Effect::BaseShift { from: 0, by, turn }),
@@ -261,6 +271,7 @@ impl Effect {
             | Effect::Coupling { share: size, .. }
             | Effect::Lag { share: size, .. }
             | Effect::Spring { rate: size, .. }
+            | Effect::Sensor { more: size, .. }
             | Effect::ZeroDrift { per: size, .. }
             | Effect::JointShift { by: size, .. }
             | Effect::Growth { per: size, .. }

@@ -3,7 +3,7 @@
 use nalgebra::{DVector, Matrix4, Vector3};
 
 use super::arm;
-use super::draw::shift_place;
+use super::draw::{sensor_place, shift_place};
 use super::effect::Effect;
 use super::site::{Devices, Site, tip_jacobian};
 use crate::effect_name::EffectName;
@@ -202,6 +202,9 @@ fn of_fixtures(list: &mut List<'_>) {
             list.add(EffectName::ClampPose, Place::named(&site.group_name(group)), six);
         }
     }
+    if matches!(site.devices, Devices::Clamps(_)) {
+        of_sensors(list);
+    }
     if !matches!(site.devices, Devices::Clamps(_)) || !site.has_masses && site.rod.is_none() {
         return;
     }
@@ -213,6 +216,24 @@ fn of_fixtures(list: &mut List<'_>) {
             (0..3).map(|axis| list.changed(Effect::Force { group, by: Vector3::ith(axis, 0.01) }, 100.0));
         let force = force.collect();
         list.add(EffectName::ContactForceVariation, place, force);
+    }
+}
+
+/// One sensor's scale, and all of a device together.
+fn of_sensors(list: &mut List<'_>) {
+    let site = list.site;
+    for group in std::iter::once(None).chain((0..site.groups()).map(Some)) {
+        let shows = |list: &List<'_>, shown: usize, along: usize| {
+            list.changed(Effect::Sensor { group, shown, along, more: 1e-3 }, 100.0)
+        };
+        for axis in 0..3 {
+            let column = shows(list, axis, axis);
+            list.add(EffectName::SensorScale, sensor_place(site, group, Some(axis)), vec![column]);
+        }
+        if group.is_none() {
+            let all = (0..9).map(|k| shows(list, k / 3, k % 3)).collect();
+            list.add(EffectName::SensorScale, sensor_place(site, None, None), all);
+        }
     }
 }
 

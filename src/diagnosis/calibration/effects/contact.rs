@@ -73,7 +73,10 @@ fn pushed(context: &Context, there: &Configuration, force: Option<Vector3<f64>>)
 }
 
 /// The same at all clamps, and at each where there are several.
-fn at_clamps(context: &Context, at: impl Fn(Location, &dyn Fn(usize) -> bool) -> Entry) -> Vec<Entry> {
+pub(super) fn at_clamps(
+    context: &Context,
+    at: impl Fn(Location, &dyn Fn(usize) -> bool) -> Entry,
+) -> Vec<Entry> {
     let groups = &context.recording.groups;
     let mut entries = vec![at(Location::AllClamps, &|_| true)];
     if groups.len() > 1 {
@@ -137,7 +140,7 @@ fn springs(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     })
 }
 
-fn is_of_clamps(context: &Context) -> bool {
+pub(in crate::diagnosis::calibration) fn is_of_clamps(context: &Context) -> bool {
     !context.has_sockets() && context.recording.groups.iter().any(|group| !group.name.is_tracked())
 }
 

@@ -2,6 +2,7 @@
 
 use super::super::model::law::{Law, TakenUp};
 use super::contact::{CONTACT_FORCE_VARIATION, CONTACT_SPRING};
+use super::device::SENSOR_SCALE;
 use super::encoders::{ENCODER_SCALE, WRIST_COUPLING};
 use super::events::{JOINT_SHIFT, OUTLIER};
 use super::fixture::{CLAMP_POSE, CLAMP_SHIFT, SOCKET_SHIFT};
@@ -15,12 +16,13 @@ use super::{CalibrationEffect, Context, Entry, mistakes};
 use crate::inference::{Effect, NotTestable};
 
 /// All of them, as they are listed wherever they are.
-pub static ALL: [&CalibrationEffect; 24] = [
+pub static ALL: [&CalibrationEffect; 25] = [
     &ROD_STIFFNESS,
     &TIP_MASS,
     &PAYLOAD_MASS,
     &CONTACT_FORCE_VARIATION,
     &CONTACT_SPRING,
+    &SENSOR_SCALE,
     &GRAVITY_DIRECTION,
     &JOINT_COMPLIANCE,
     &JOINT_NONLINEAR_STIFFNESS,

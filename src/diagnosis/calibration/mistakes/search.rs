@@ -12,6 +12,7 @@ pub mod elsewhere;
 mod extended;
 pub mod fixtures;
 mod left_to_effects;
+mod moved_fixtures;
 pub mod part;
 mod partial;
 pub mod score;

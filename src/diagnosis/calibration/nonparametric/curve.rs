@@ -8,6 +8,9 @@ use crate::units::UM;
 
 /// Size of a displacement, m: what calibrated arms of 1 m reach miss by.
 pub(super) const SIZE: f64 = 100.0 * UM;
+/// Cosines along one number, beside the constant.
+pub(super) const MOST: usize = 6;
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 /// Size of a turn, rad: as large at 1 m.
 pub(super) const TURN: f64 = 100e-6;
 /// Lines through the middle of a cube: of its faces, edges and corners. None is farther than 27°

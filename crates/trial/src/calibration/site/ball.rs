@@ -255,7 +255,26 @@ impl Site {
                 _ => {}
             }
         }
-        tip
+        self.shown(at.group, tip, effects)
+    }
+
+    /// What the sensors of a device make of where the ball is.
+    fn shown(&self, group: usize, tip: Vector3<f64>, effects: &[Effect]) -> Vector3<f64> {
+        let device = self.device(group);
+        let rotation: Matrix3<f64> = device.fixed_view::<3, 3>(0, 0).into_owned();
+        let displacement = rotation.tr_mul(&(tip - arm::column(&device, 3)));
+        let mut shown = tip;
+        for effect in effects {
+            match effect {
+                Effect::Sensor { group: only, shown: axis, along, more }
+                    if only.is_none_or(|only| only == group) =>
+                {
+                    shown += rotation.column(*axis) * (more * displacement[*along]);
+                }
+                _ => {}
+            }
+        }
+        shown
     }
 }
 

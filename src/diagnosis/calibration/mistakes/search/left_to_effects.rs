@@ -8,7 +8,7 @@ use super::{FittedDraft, MistakeSearch, SearchStep};
 use crate::statistics::median;
 
 /// The price of a clamp that is not quite in its place: the same for its three numbers.
-const DISPLACED: f64 = -7.5;
+pub(super) const DISPLACED: f64 = -7.5;
 /// The price of a tip that is elsewhere from some row on: three numbers and the row.
 const SLIPPED: f64 = -12.0;
 /// The price of a contact force of another size, and the sizes that are tried beside one that a
@@ -17,36 +17,38 @@ const FORCE: (f64, [f64; 2]) = (-3.0, [0.5, 2.0]);
 
 impl MistakeSearch<'_> {
     /// The best score of physics that acts on what the last change of `changed` acts on: small
-    /// moves, places of clamps where their frames are changed, a tip that slipped where positions
-    /// are changed in some rows, another contact force.
+    /// moves, places of clamps where their frames are changed, fixtures that moved and a tip that
+    /// slipped where some rows are changed, another contact force.
     pub fn of_effects(&self, changed: &FittedDraft, from: &FittedDraft, tried: &[FittedDraft]) -> f64 {
         let small = tried.iter().filter(|state| !self.is_far(state)).map(|state| state.score);
         let others = [self.slipped(changed, from), self.another_force(changed, from)];
         let displaced = self.displaced(changed, from).into_iter();
+        let displaced = displaced.chain(self.moved_fixtures(changed, from));
         small.chain(displaced).chain(others.into_iter().flatten()).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Clamps that are not quite in their places.
+    /// Clamps that are not quite in their places: any one, or all whose frames are changed. Of
+    /// three clamps one that stands aside pulls at all that they show.
     fn displaced(&self, changed: &FittedDraft, from: &FittedDraft) -> Vec<f64> {
-        let turned: Vec<Vec<usize>> = match changed.steps.last().map(|step| self.change(step)) {
-            Some(DraftChange::Devices(frames)) => vec![
+        if self.draft.has_sockets() || self.draft.devices.len() < 2 {
+            return Vec::new();
+        }
+        let mut turned: Vec<Vec<usize>> = (0..self.draft.devices.len()).map(|clamp| vec![clamp]).collect();
+        match changed.steps.last().map(|step| self.change(step)) {
+            Some(DraftChange::Devices(frames)) => turned.push(
                 (frames.iter())
                     .filter(|(clamp, frame)| frame.origin == from.thin.devices[*clamp].origin)
                     .map(|(clamp, _)| *clamp)
                     .collect(),
-            ],
-            Some(DraftChange::Moved(_)) if self.draft.devices.len() > 1 => {
-                (0..self.draft.devices.len()).map(|clamp| vec![clamp]).collect()
-            }
-            _ => Vec::new(),
-        };
+            ),
+            Some(DraftChange::Moved(_) | DraftChange::Seen(_)) => {}
+            _ => return Vec::new(),
+        }
         let displaced = turned.into_iter().filter(|turned| !turned.is_empty()).filter_map(|turned| {
             let mut thin = from.thin.clone();
             thin.loose = turned;
             let price = DISPLACED * thin.loose.len() as f64;
-            let fit = fit(&thin, &self.bodies[thin.body], Worthwhile::ANY)?;
-            let loose = self.restarted(self.scored(from.steps.clone(), thin, fit), changed);
-            Some(loose.score + price)
+            self.with_loose(thin, price, changed, from)
         });
         displaced.collect()
     }

@@ -174,3 +174,26 @@ fn a_disturbed_row_in_a_clamp_is_no_other_unit_and_no_other_row() {
     }
     assert!(found(&wrong).iter().all(|(effect, _)| effect == "outlier"), "{:?}", found(&wrong));
 }
+
+/// Of three clamps one that stands beside its place makes a part of the rows, or all that the
+/// devices show, look wrong: that is left to the effects.
+#[test]
+fn one_of_three_clamps_beside_its_place_is_no_mistake() {
+    let right = tx90();
+    let clamp_of = |campaign: &Campaign, row: usize| campaign.measurements.rows[row].group;
+    let rows: Vec<usize> = (0..right.measurements.len()).filter(|&row| clamp_of(&right, row) < 3).collect();
+    let three = Campaign { measurements: right.measurements.subset(&rows), ..right };
+    // parts of the rows, parts, parts, then all of them
+    for (clamp, by) in
+        [(0, [0.9, 0.0, 0.0]), (0, [0.0, 1.5, 0.0]), (1, [0.4, 0.0, 0.0]), (1, [0.0, 0.9, 0.0])]
+    {
+        let mut wrong = three.clone();
+        for row in 0..wrong.measurements.len() {
+            if clamp_of(&wrong, row) == clamp {
+                let aside = wrong.measurements.device(row).rotation * Vector3::from(by) * MM;
+                points(&mut wrong)[row] += aside;
+            }
+        }
+        assert_eq!(found(&wrong), [], "clamp {clamp} by {by:?}");
+    }
+}

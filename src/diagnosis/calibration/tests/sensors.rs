@@ -1,0 +1,105 @@
+//! Displacement sensors of clamps that show too much, something of another axis, or no straight
+//! line; and what is none of them.
+
+use nalgebra::Matrix3;
+
+use super::*;
+use crate::inference::Finding;
+
+/// A coordinate's noise, m: displacements are some 0.1 mm.
+const NOISE: f64 = 5.0 * UM;
+
+/// The campaign as a device shows it, which makes `shown` of the true displacement in its frame.
+fn shown(campaign: &Campaign, shown: &dyn Fn(Vector3<f64>) -> Vector3<f64>, seed: u64) -> Campaign {
+    let recording = &campaign.measurements;
+    let Targets::Points(points) = &recording.targets else { panic!("no points") };
+    let by = |row: usize| {
+        let device = recording.device(row);
+        let true_one = device.inverse().point(&points[row]);
+        device.rotation * (shown(true_one) - true_one)
+    };
+    recorded(campaign, &by, NOISE, seed)
+}
+
+fn diagnosed(campaign: &Campaign) -> (Vec<Finding>, Option<String>) {
+    let found = diagnose_as_recorded(campaign, Mode::Fea, &Options::default()).unwrap();
+    let left = found.diagnosis.discrepancy.and_then(|left| left.location);
+    (found.diagnosis.findings, left.map(|location| location.to_string()))
+}
+
+fn assert_number(finding: &Finding, name: &str, expected: f64) {
+    let number = finding.estimates.iter().find(|estimate| estimate.name == name).unwrap();
+    // 95 % intervals, widened to what three standard deviations are
+    let half = 0.75 * (number.high - number.low);
+    assert!((number.value - expected).abs() < half, "{name}: {} of {expected}, ± {half}", number.value);
+    assert!(half < 0.02, "{name}: ± {half}");
+}
+
+#[test]
+fn a_sensor_that_shows_too_much_is_named_with_its_axis_and_factor() {
+    let campaign = clamps(30);
+    for (axis, name, factor) in [(1, "y", 1.15), (2, "z", 0.88)] {
+        let matrix = Matrix3::from_diagonal(&Vector3::from_fn(|k, _| if k == axis { factor } else { 1.0 }));
+        let wrong = shown(&campaign, &|u| matrix * u, 3 + axis as u64);
+        let (findings, left) = diagnosed(&wrong);
+        assert_eq!((findings.len(), &left), (1, &None), "{left:?}");
+        assert_eq!(findings[0].effect.name, "sensor_scale");
+        assert_eq!(findings[0].location.to_string(), format!("all clamps, axis {name}"));
+        assert_number(&findings[0], "factor", factor);
+        let word = if factor > 1.0 { "% too high" } else { "% too low" };
+        assert!(findings[0].description.observed.ends_with(word), "{}", findings[0].description.observed);
+    }
+}
+
+#[test]
+fn cross_talk_is_named_with_its_axes_and_taken_out_of_the_points() {
+    let campaign = clamps(30);
+    let mut matrix = Matrix3::identity();
+    matrix[(0, 1)] = 0.12;
+    let wrong = shown(&campaign, &|u| matrix * u, 5);
+    let found = diagnose_as_recorded(&wrong, Mode::Fea, &Options::default()).unwrap();
+    let finding = &found.diagnosis.findings[0];
+    assert_eq!(found.diagnosis.findings.len(), 1);
+    assert_eq!((finding.effect.name, finding.location.to_string()), ("sensor_scale", "all clamps".into()));
+    assert_number(finding, "x_per_y", 0.12);
+    assert_number(finding, "y_per_y", 1.0);
+    let observed = &finding.description.observed;
+    assert!(observed.contains("% of a displacement along y along x"), "{observed}");
+    let mut extended = wrong.clone();
+    let record = registry::record(finding.effect).unwrap();
+    (record.write)(finding, &found.model, &mut extended);
+    let right = shown(&campaign, &|u| u, 5);
+    let points = |campaign: &Campaign| match &campaign.measurements.targets {
+        Targets::Points(points) => points.clone(),
+        Targets::Sockets(_) => Vec::new(),
+    };
+    let off = |one: &Campaign| -> f64 {
+        points(one).iter().zip(points(&right)).map(|(one, right)| (one - right).norm_squared()).sum()
+    };
+    assert!(off(&extended) < 0.05 * off(&wrong), "{} of {}", off(&extended), off(&wrong));
+}
+
+#[test]
+fn a_spring_of_the_device_is_no_scale_of_its_sensors() {
+    let campaign = clamps(30);
+    let (model, _) = modelled(&campaign, Mode::Fea);
+    let index = find(&model, "contact_spring", "all clamps");
+    let mut term = model.candidates()[index].neutral(index);
+    term.values[0] = 250.0;
+    let bent = model.response(&[term]);
+    let sprung = recorded(&campaign, &|row| bent.fixed_rows::<3>(3 * row).into(), NOISE, 7);
+    let (findings, left) = diagnosed(&sprung);
+    let names: Vec<String> = findings.iter().map(|f| format!("{} {}", f.effect, f.location)).collect();
+    assert_eq!((names, left), (vec!["contact_spring all clamps".to_owned()], None));
+}
+
+#[test]
+fn a_sensor_that_is_not_linear_is_said_to_follow_its_displacement() {
+    let campaign = clamps(30);
+    let bent = |mut u: Vector3<f64>| {
+        u.y += 30.0 * UM * (u.y / (40.0 * UM)).sin();
+        u
+    };
+    let (_, left) = diagnosed(&shown(&campaign, &bent, 8));
+    assert_eq!(left.as_deref(), Some("displacement along y of the clamps, a curve"));
+}

@@ -89,6 +89,8 @@ fn a_rod_that_gives_way_less_the_faster_it_is_loaded() {
     let headline = answer.json["headline"].as_str().unwrap();
     assert_eq!(answer.effects(), [""; 0], "{headline}");
     assert!(headline.contains("follows the speed at which the load was changed"), "{headline}");
+    let law = &answer.json["law"];
+    assert_eq!(law["variable"]["name"], "speed of loading", "{}", law["words"]);
 }
 
 /// A rod, and its readings under three trials of eight loads along z. `at`: the time, s, the load

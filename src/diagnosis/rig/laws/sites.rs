@@ -239,9 +239,7 @@ impl Recording<'_> {
         }
         if let Some(speeds) = before.speeds(data) {
             let variable = SiteVariable::OfFile(LawVariable::LoadingSpeed);
-            // of the first reading of a run nobody knows it
-            let values: Vec<f64> = speeds.into_iter().map(Option::unwrap_or_default).collect();
-            sites.push(share(Part::Rod, variable, own(), values, OF_A_SPEED));
+            sites.push(share(Part::Rod, variable, own(), speeds, OF_A_SPEED));
         }
         if let (Some(wait), Some(_)) = (&before.wait, before.waits()) {
             let variable = SiteVariable::OfFile(LawVariable::SinceChange);

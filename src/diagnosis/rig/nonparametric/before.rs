@@ -60,22 +60,25 @@ impl Before {
     }
 
     /// How fast the load was changed to what it is, N/s: v = (F − F′)/Δt, positive where it grew, Δt
-    /// from the reading before until it hung, else until it is read. None at the first reading of a
-    /// run; nothing where it is always the same at the same load.
-    pub fn speeds(&self, data: &[Datum]) -> Option<Vec<Option<f64>>> {
+    /// from the reading before until it hung, else until it is read; at the first reading of a run
+    /// the usual one. Nothing where it is always the same at the same load.
+    pub fn speeds(&self, data: &[Datum]) -> Option<Vec<f64>> {
         let times: Vec<f64> = data.iter().map(|d| d.time).collect::<Option<_>>()?;
-        let mut speed = vec![None; data.len()];
+        let usual = dwell(data, &times);
+        let mut speed = vec![0.0; data.len()];
         for run in runs(data) {
-            let instants = instants(data, &run);
-            for pair in instants.windows(2) {
-                for &i in &pair[1] {
+            let mut before: Option<f64> = None;
+            for instant in instants(data, &run) {
+                for &i in &instant {
                     let (sign, change) = (f64::from(data[i].direction.sign), data[i].drive() - self.load[i]);
-                    let took = data[i].loaded_at.unwrap_or(times[i]) - times[pair[0][0]];
-                    speed[i] = (took > 0.0).then(|| sign * change / took);
+                    let took = before.map_or(usual, |before| data[i].loaded_at.unwrap_or(times[i]) - before);
+                    speed[i] = if took > 0.0 { sign * change / took } else { 0.0 };
                 }
+                before = Some(times[instant[0]]);
             }
         }
-        Some(speed).filter(|speeds| is_free(data, speeds))
+        let known: Coordinate = speed.iter().copied().map(Some).collect();
+        is_free(data, &known).then_some(speed)
     }
 
     /// C·(F − F′) of each datum, m: how far the rod deflects between the reading before and this
@@ -95,10 +98,10 @@ impl Before {
 }
 
 /// arsinh(v/v₀) of speeds, v₀ the slowest: as many columns for a decade as for the next.
-pub(super) fn by_decade(speeds: &[Option<f64>]) -> Coordinate {
-    let sizes = speeds.iter().flatten().map(|v| v.abs()).filter(|v| *v > 0.0);
+pub(super) fn by_decade(speeds: &[f64]) -> Coordinate {
+    let sizes = speeds.iter().map(|v| v.abs()).filter(|v| *v > 0.0);
     let slowest = sizes.fold(f64::INFINITY, f64::min);
-    speeds.iter().map(|v| Some((v.as_ref()? / slowest).asinh())).collect()
+    speeds.iter().map(|v| Some((v / slowest).asinh())).collect()
 }
 
 /// Is a coordinate not always the same at the same load?
@@ -154,12 +157,8 @@ mod tests {
         let data = datum::all(&Readings::from_text("f", text).unwrap().rows);
         let before = Before::of(&data);
         assert_eq!(before.loads(&data), Some(vec![Some(0.0), Some(5.0), Some(10.0)]));
-        // the same load came once from below and once, half as fast, from above
-        let speeds = before.speeds(&data);
-        assert_eq!(speeds, None, "the first load of a run has no speed");
-        let text = format!("{}-y,1,10,load,35,20\n-y,1,5,unload,40,10\n", text);
-        let data = datum::all(&Readings::from_text("f", &text).unwrap().rows);
-        let speeds = Before::of(&data).speeds(&data).unwrap();
-        assert_eq!(speeds, [None, Some(0.5), Some(-0.25), Some(1.0), Some(-1.0)]);
+        // the same load came once from below and once, more slowly, from above; as long as usual
+        // before the first reading
+        assert_eq!(before.speeds(&data), Some(vec![0.25, 0.5, -0.25]));
     }
 }

@@ -25,6 +25,7 @@
 
 mod along;
 mod before;
+mod cosines;
 mod cycles;
 mod held_back;
 mod kink;
@@ -32,15 +33,13 @@ mod station;
 mod swing;
 mod transient;
 
-use std::f64::consts::PI;
-use std::sync::Arc;
-
 use self::along::*;
 pub(super) use self::before::Before;
 use self::before::by_decade;
+use self::cosines::{cosines, curve, scaled};
 use self::cycles::Cycles;
 use super::effects::entry::{Entry, UNBOUNDED, parameter};
-use super::mechanics::action::{Action, Weights};
+use super::mechanics::action::Action;
 use super::mechanics::load_history::runs;
 use super::model::Body;
 use super::numbering::numbered;
@@ -184,37 +183,6 @@ fn by_axis(data: &[Datum], load: impl Fn(&Datum) -> f64, is_wanted: impl Fn(&Dat
     data.iter().map(rank).collect()
 }
 
-/// From 0 to 1; nothing where the values do not differ.
-fn scaled(values: &[Option<f64>]) -> Coordinate {
-    let known = values.iter().flatten();
-    let (least, most) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
-    let scale =
-        |value: &Option<f64>| Some((value.as_ref()? - least) / (most - least)).filter(|x| x.is_finite());
-    values.iter().map(scale).collect()
-}
-
-/// A curve over a coordinate on some of the data; nothing where the coordinate has no meaning for
-/// any.
-fn curve(
-    along: Along,
-    place: &str,
-    coordinate: &Coordinate,
-    group: &[usize],
-    suffix: &str,
-    size: f64,
-    amplitude: impl Fn(usize) -> f64,
-) -> Option<Entry> {
-    let sizes: Vec<f64> = (0..MOST_COLUMNS).map(|j| size / (1 + j) as f64).collect();
-    cosines(
-        &format!("{}, {place}", along.name),
-        (along, place),
-        (coordinate, group),
-        suffix,
-        &sizes,
-        amplitude,
-    )
-}
-
 /// A curve in time that swings; nothing where too few times are known to see that.
 fn fine(along: Along, place: &str, coordinate: &Coordinate, group: &[usize], size: f64) -> Option<Entry> {
     let times = numbered(group.iter().filter_map(|&i| coordinate[i]).map(f64::to_bits));
@@ -223,34 +191,6 @@ fn fine(along: Along, place: &str, coordinate: &Coordinate, group: &[usize], siz
     let sizes: Vec<f64> = (0..FINE).map(|j| size / (1.0 + j as f64 / even).powi(2)).collect();
     let label = format!("{}, in swings, {place}", along.name);
     cosines(&label, (along, place), (coordinate, group), "um", &sizes, |_| 1.0)
-}
-
-/// Σ_j a_j·cos(π j x), a_j of these sizes; of fewer values than columns as many columns.
-fn cosines(
-    label: &str,
-    (along, place): (Along, &str),
-    (coordinate, group): (&Coordinate, &[usize]),
-    suffix: &str,
-    sizes: &[f64],
-    amplitude: impl Fn(usize) -> f64,
-) -> Option<Entry> {
-    let known: Vec<(usize, f64)> = group.iter().filter_map(|&i| Some((i, coordinate[i]?))).collect();
-    let different = numbered(known.iter().map(|(_, x)| x.to_bits())).into_iter().max()? + 1;
-    let own: Arc<[usize]> = known.iter().map(|(i, _)| *i).collect();
-    let (parameters, actions) = (0..different.min(sizes.len()))
-        .map(|j| {
-            let parameter = parameter(&format!("cosine_{j}_{suffix}"), 0.0, sizes[j], UNBOUNDED);
-            let weight = |&(i, x): &(usize, f64)| amplitude(i) * (PI * j as f64 * x).cos();
-            let values = known.iter().map(weight).collect();
-            (parameter, Action::Shift(Weights { data: Arc::clone(&own), values }))
-        })
-        .unzip();
-    let location = Location::Curve {
-        label: label.to_owned(),
-        follows: along.follows(place),
-        along: Some(along.variable),
-    };
-    Some((rival(location, parameters), actions))
 }
 
 /// What moves the tip towards the load, by a curve of its size wherever it pulls to; nothing along

@@ -84,8 +84,9 @@ pub enum Effect {
     Damping { share: f64, time: f64 },
     /// Friction of a slide that wears: N in the first run, N in the last, growing evenly between.
     WearingFriction { first: f64, last: f64 },
-    /// A rod that gives way as fast as it is loaded: displacement × (1 + k·log₁₀(1 + |v|/v₀)), v the
-    /// change of the load over the time between two readings, v₀ a thousandth of the largest load per second.
+    /// A rod that gives way as fast as it is loaded: displacement × (1 + k·log₁₀(1 + |v|/v₀)), v
+    /// the change of the load over the time between two readings, v₀ a thousandth of the largest
+    /// load per second.
     SpeedOfLoading(f64),
     /// A clamp that slips little by little: `per_newton`·z, m, along the load, z (N) by the
     /// equation of Bouc and Wen. SimulatedCase to order only.

@@ -12,7 +12,7 @@
 use super::super::numbering::numbered;
 use super::along::{ALL_DEFLECTIONS, Along, Coordinate, along, along_the_recording};
 use super::before::Before;
-use super::{curve, scaled};
+use super::cosines::{curve, scaled};
 use crate::diagnosis::rig::effects::entry::Entry;
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::Variable;

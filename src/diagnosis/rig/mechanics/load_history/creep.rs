@@ -35,8 +35,8 @@ pub enum Changed {
     Midway,
     /// Right before the other.
     Late,
-    /// So many quarters of the shortest time between two readings before each reading: whoever hangs
-    /// a load waits about as long every time.
+    /// So many quarters of the shortest time between two readings before each reading: whoever
+    /// hangs a load waits about as long every time.
     Waited(u8),
 }
 

@@ -79,12 +79,9 @@ pub fn residuals(found: &RigDiagnosis) -> Figure {
     series.retain(|series| !series.points.is_empty());
     let variable = covariate.variable;
     let unit = if variable.unit().is_empty() { String::new() } else { format!(" / {}", variable.unit()) };
-    let plainest = most_structured(found).filter(|_| diagnosis.is_mismatch()).map_or_else(String::new, |k| {
-        format!(
-            " Of all variables the residuals follow this one most clearly: {}.",
-            found.evidence.covariates[k].variable.title(NOUN)
-        )
-    });
+    let is_drawn = |k: &usize| found.evidence.covariates[*k].variable == variable;
+    let plainest = most_structured(found).filter(|_| diagnosis.is_mismatch()).filter(is_drawn);
+    let plainest = plainest.map_or("", |_| " Of all variables the residuals follow this one most clearly.");
     before_after(&BeforeAfter {
         along: format!("{}{unit}", variable.title(NOUN)),
         names: value_names(&covariate, data),

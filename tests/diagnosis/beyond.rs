@@ -94,6 +94,8 @@ fn a_rod_that_gives_way_less_the_faster_it_is_loaded() {
     assert!(headline.contains("follows the speed at which the load was changed"), "{headline}");
     let law = &answer.json["law"];
     assert_eq!(law["variable"]["name"], "speed of loading", "{}", law["refused"]);
+    // of a speed of either sign
+    assert_eq!(law["expression"]["text"], "Δu/u = a·sgn(v)·ln(1 + |v|/v_0)");
 }
 
 /// A rod, and its readings under three trials of these loads along z, N. `at`: the time, s, the

@@ -14,6 +14,10 @@
 //! that acts on all lines alike, such as relaxation with one time constant or a seat that gives
 //! way, is one rival and not many.
 //!
+//! What the load before leaves behind, the time since its change and the speed of that multiply
+//! deflections ([`before`]). A force against the motion that is not the same throughout has its size
+//! as a curve ([`held_back`]).
+//!
 //! What is softer along the rod here than there is a curve over its stations ([`station`]).
 //!
 //! What sets in suddenly and decays has rivals that begin at every reading ([`transient`]), what
@@ -66,7 +70,8 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
     let clock = if data.iter().any(|d| d.time.is_some()) { Variable::Time } else { Variable::Order };
     let mut entries = Vec::new();
     let cycles = Cycles::of(data, deflections);
-    for (along, coordinate, is_of_line) in coordinates(data) {
+    let levels = by_axis(data, |d| d.drive().abs(), |_| true);
+    for (along, coordinate, is_of_line) in coordinates(data, &levels) {
         let mut curves: Vec<Entry> = Vec::new();
         curves.extend(curve(along, ALL_DEFLECTIONS, &coordinate, &everything, "percent", SHARE, |i| {
             deflections[i]
@@ -101,7 +106,6 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
             deflections[i]
         }));
     }
-    let levels = by_axis(data, |d| d.drive().abs(), |_| true);
     entries.extend(held_back::all(data, &before::slopes(data, deflections), &before, &levels));
     entries.extend(swing::of_displays(data, deflections));
     entries.extend(along_the_load(data));
@@ -114,9 +118,8 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
 }
 
 /// What a reading may follow: name, coordinate, and whether it acts by line (loads) or by channel
-/// (drifts).
-fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
-    let levels = by_axis(data, |d| d.drive().abs(), |_| true);
+/// (drifts). `levels`: the load of each datum.
+fn coordinates(data: &[Datum], levels: &Coordinate) -> Vec<(Along, Coordinate, bool)> {
     let unloading = by_axis(data, |d| d.drive().abs(), Datum::is_unloading);
     let mut position: Coordinate = vec![None; data.len()];
     let of_runs = runs(data);
@@ -126,7 +129,7 @@ fn coordinates(data: &[Datum]) -> Vec<(Along, Coordinate, bool)> {
             position[i] = Some(row as f64);
         }
     }
-    let mut found = vec![(LOAD, levels, true), (UNLOADING, unloading, true)];
+    let mut found = vec![(LOAD, levels.clone(), true), (UNLOADING, unloading, true)];
     // a clamp that is loose one way, a contact that opens
     let pushes = |axis: Axis| data.iter().any(|d| d.direction.axis == axis && d.drive() < 0.0);
     let pulls = |axis: Axis| data.iter().any(|d| d.direction.axis == axis && d.drive() > 0.0);

@@ -43,6 +43,15 @@ impl Quantity {
         }
     }
 
+    /// What is read over what should be in words: `12 ± 2 % too high`, `12 ± 2 % too low`, of less
+    /// than half or more than twice as [`Quantity::compared`].
+    pub fn misread(self) -> String {
+        match self.value < 1.0 && self.value >= 0.5 {
+            true => self.map(|ratio| 100.0 * (1.0 - ratio)).say("%") + " too low",
+            false => self.compared("too high", "too low"),
+        }
+    }
+
     /// `1.02 ± 0.04 N`; where a bound cuts the interval off, `0.3 (0 to 0.9) N`.
     pub fn say(&self, unit: &str) -> String {
         let half = (self.high - self.low) / 2.0;
@@ -84,6 +93,15 @@ mod tests {
         assert_eq!(words(0.0), "over 1000 times stiffer");
         assert_eq!(words(0.5), "100 ± 4 % stiffer");
         assert_eq!(words(1.0 / 7.0), "7.00 ± 0.14 times stiffer");
+    }
+
+    #[test]
+    fn a_reading_that_is_too_low_is_so_by_a_share_of_the_true_one() {
+        let words = |value: f64| Quantity { value, low: 0.98 * value, high: 1.02 * value }.misread();
+        assert_eq!(words(1.12), "12 ± 2 % too high");
+        assert_eq!(words(0.88), "12.0 ± 1.8 % too low");
+        assert_eq!(words(0.5), "50.0 ± 1.0 % too low");
+        assert_eq!(words(0.25), "4.00 ± 0.08 times too low");
     }
 
     #[test]

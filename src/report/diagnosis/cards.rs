@@ -1,6 +1,6 @@
 //! What a reader in a hurry takes away from a diagnosis.
 
-use super::headline::{RIVALS_SAID, cause_at, scatter_name, um};
+use super::headline::{RIVALS_SAID, cause_at, is_scatter_estimated, um};
 use super::subject::Subject;
 use crate::inference::{Finding, Kind};
 use crate::report::{Card, Tone};
@@ -80,7 +80,8 @@ fn sure(subject: &Subject, finding: &Finding) -> Card {
 }
 
 fn left(subject: &Subject) -> Card {
-    let noise = format!("{} {} µm{}", scatter_name(subject), um(subject.diagnosis.noise), subject.per);
+    let scatter = if is_scatter_estimated(subject) { "estimated scatter" } else { "scatter" };
+    let noise = format!("{scatter} {} µm{}", um(subject.diagnosis.noise), subject.per);
     match &subject.remainder {
         Some(remainder) => {
             let value = format!("{} µm rms", um(remainder.rms));

@@ -99,14 +99,10 @@ fn scatter_of(subject: &Subject) -> String {
     }
 }
 
-/// What the scatter is: measured, or estimated from the residual, which the fit has made smaller
-/// than it.
-pub fn scatter_name(subject: &Subject) -> &'static str {
-    let test = &subject.diagnosis.noise_test;
-    match (test.stated, &subject.diagnosis.lack_of_fit_after) {
-        (None, None) => "scatter, the fitted parameters allowed for:",
-        _ => "scatter",
-    }
+/// Is the scatter neither stated nor shown by repeats? It is then estimated from the residual, which
+/// the fit has made smaller than it.
+pub fn is_scatter_estimated(subject: &Subject) -> bool {
+    subject.diagnosis.noise_test.stated.is_none() && subject.diagnosis.lack_of_fit_after.is_none()
 }
 
 /// Zeros that differ far more than readings do: nothing that was looked for, and no agreement

@@ -1,6 +1,6 @@
 //! The body of a diagnosis' report, of a rig or of a calibration.
 
-use super::headline::{RIVALS_SAID, scatter_name, sentence, um};
+use super::headline::{RIVALS_SAID, is_scatter_estimated, sentence, um};
 use super::hidden::hidden;
 use super::law;
 use super::subject::Subject;
@@ -86,14 +86,11 @@ fn remains(subject: &Subject) -> Section {
     let Some(left) = &subject.remainder else {
         let whose = whose(subject);
         let words = format!(
-            "The residual{whose} is {} µm rms{}; the {} {} µm.",
+            "The residual{whose} is {} µm rms{}; the scatter is {} µm{}.",
             um(diagnosis.error_after()),
             subject.per,
-            match scatter_name(subject) {
-                "scatter" => "scatter is",
-                estimated => estimated,
-            },
-            um(diagnosis.noise)
+            um(diagnosis.noise),
+            if is_scatter_estimated(subject) { ", with the fitted parameters allowed for" } else { "" }
         );
         return Section::new("What remains", vec![Block::Paragraph(words)]);
     };

@@ -14,13 +14,16 @@ use crate::inference::{
     Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Parameter, Quantity, Reported,
     WrittenTo,
 };
+use crate::spatial::Axis;
 
 /// Error of a sensor's scale, and what it shows of a displacement across it: an axis that is turned
 /// by 1.7°.
 const SCALE: f64 = 0.03;
-/// True over shown displacement: no less than nothing, and not ten times as much.
-const BOUNDS: (f64, f64) = (0.0, 10.0);
-const AXES: [&str; 3] = ["x", "y", "z"];
+/// True over shown displacement: what is off by more than a factor of two, on a rig too, is another
+/// unit, or another axis.
+const BOUNDS: (f64, f64) = (0.5, 2.0);
+/// The same of what is shown along another axis, one that is turned by 30°.
+const MOST_CROSS_TALK: (f64, f64) = (-0.5, 0.5);
 /// Which axis shows something, of a displacement along which one.
 const CROSS: [[&str; 3]; 3] =
     [["x_per_x", "x_per_y", "x_per_z"], ["y_per_x", "y_per_y", "y_per_z"], ["z_per_x", "z_per_y", "z_per_z"]];
@@ -86,15 +89,15 @@ fn devices(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let of_axis = |axis: usize| {
         at_clamps(context, |place, is_there| {
             let factor = Parameter { neutral: 1.0, bounds: BOUNDS, ..linear("factor", SCALE) };
-            let location = Location::Named(format!("{place}, axis {}", AXES[axis]));
+            let location = Location::Named(format!("{place}, axis {}", Axis::ALL[axis]));
             single(&SENSOR_SCALE, location, factor, column(axis, axis, is_there))
         })
     };
     let mut entries: Vec<Entry> = (0..3).flat_map(of_axis).collect();
     // one device goes from clamp to clamp: of a single clamp nine numbers say what scatter does too
     let parameter = |(shown, along): (usize, usize)| {
-        let neutral = if shown == along { 1.0 } else { 0.0 };
-        let parameter = Parameter { neutral, ..linear(CROSS[shown][along], SCALE) };
+        let (neutral, bounds) = if shown == along { (1.0, BOUNDS) } else { (0.0, MOST_CROSS_TALK) };
+        let parameter = Parameter { neutral, bounds, ..linear(CROSS[shown][along], SCALE) };
         (parameter, column(shown, along, &|_| true))
     };
     let nine = pairs().map(parameter).collect();
@@ -145,8 +148,8 @@ fn shown_of(true_per_shown: &[Estimate]) -> Matrix3<f64> {
 fn scale_observed(finding: &Finding, _: &CalibrationModel) -> String {
     let place = &finding.location;
     if let [factor] = &finding.estimates[..] {
-        let how = factor.quantity().compared("too high", "too low");
-        return format!("The displacement sensor of {place} reads {how}");
+        let how = factor.quantity().misread();
+        return format!("The displacement sensor ({place}) reads {how}");
     }
     let off = |estimate: &Estimate| -> Option<((usize, usize), Quantity)> {
         let at = entry_of(&estimate.name)?;
@@ -159,7 +162,7 @@ fn scale_observed(finding: &Finding, _: &CalibrationModel) -> String {
     else {
         return format!("The displacement sensors of {place} read wrongly");
     };
-    let (by, shown, along) = (percent.size().say("%"), AXES[shown], AXES[along]);
+    let (by, shown, along) = (percent.size().say("%"), Axis::ALL[shown], Axis::ALL[along]);
     let largest = match (shown == along, percent.value < 0.0) {
         (true, true) => format!("by {by} too little along {shown}"),
         (true, false) => format!("by {by} too much along {shown}"),

@@ -177,6 +177,14 @@ fn positions_in_another_unit() {
 }
 
 #[test]
+fn one_column_in_another_unit() {
+    for factor in [1.0 / 25.4, 1e3] {
+        let wrong = |x: Vector3<f64>| Vector3::new(x.x, x.y, x.z * factor);
+        assert_eq!(found(&with_positions(&tx90(), wrong)), one("unit_mistake", "z_mm"), "{factor}");
+    }
+}
+
+#[test]
 fn axes_of_the_device() {
     let flipped = |x: Vector3<f64>| Vector3::new(x.x, x.y, -x.z);
     let swapped = |x: Vector3<f64>| Vector3::new(x.y, x.x, x.z);

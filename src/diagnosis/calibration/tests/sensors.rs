@@ -80,6 +80,14 @@ fn cross_talk_is_named_with_its_axes_and_taken_out_of_the_points() {
 }
 
 #[test]
+fn what_shows_three_times_too_much_is_no_error_of_a_scale() {
+    let matrix = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 3.0));
+    let (findings, left) = diagnosed(&shown(&clamps(30), &|u| matrix * u, 5));
+    assert!(findings.iter().all(|finding| finding.effect.name != "sensor_scale"));
+    assert!(!findings.is_empty() || left.is_some());
+}
+
+#[test]
 fn a_spring_of_the_device_is_no_scale_of_its_sensors() {
     let campaign = clamps(30);
     let (model, _) = modelled(&campaign, Mode::Fea);

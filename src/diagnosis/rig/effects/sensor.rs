@@ -81,11 +81,7 @@ pub static SENSOR_SCALE: RigEffect = RigEffect {
     },
     missing: |_| "no readings were taken",
     observed: |finding, _| {
-        let factor = number(finding, "factor");
-        let how = match factor.value < 1.0 && factor.value > 0.5 {
-            true => factor.map(|factor| 100.0 * (1.0 - factor)).say("%") + " too low",
-            false => factor.compared("too high", "too low"),
-        };
+        let how = number(finding, "factor").misread();
         format!("Sensor {} reads {how}", finding.location)
     },
     write: out_of_the_readings,

@@ -8,7 +8,8 @@
 //! y = C·F + g(t)·C·(F − F′)      F′ the load before, t the time since the load was changed
 //! ```
 //!
-//! and what remembers otherwise shows C·F·h(F′). Both g and h are curves of no law.
+//! and what remembers otherwise shows C·F·h(F′), or C·F·k(v) with v = (F − F′)/Δt the speed of
+//! loading. g, h and k are curves of no law.
 
 use std::collections::HashMap;
 
@@ -59,8 +60,8 @@ impl Before {
         (most > SAME_WAIT * least).then(|| wait.iter().map(|t| Some(t.max(least).ln())).collect())
     }
 
-    /// How fast the load was changed to what it is, N/s: v = (F − F′)/Δt, positive where it grew,
-    /// Δt from the reading before until it hung, else until it is read; at the first reading of a
+    /// How fast the load was changed to what it is, N/s (m/s of an imposed displacement):
+    /// v = (F − F′)/Δt, positive where it grew, Δt from the reading before until it hung, else until it is read; at the first reading of a
     /// run the usual one. Nothing where it is always the same at the same load.
     pub fn speeds(&self, data: &[Datum]) -> Option<Vec<f64>> {
         let times: Vec<f64> = data.iter().map(|d| d.time).collect::<Option<_>>()?;

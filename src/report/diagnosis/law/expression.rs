@@ -22,14 +22,18 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
     let largest = significant(site.largest() / site.variable.si, 3);
     let (unit, corner) = (site.variable.unit, format!("{variable}_0"));
     let scale = if unit.is_empty() { largest.clone() } else { format!("{largest} {unit}") };
+    // of a variable with two signs what grows from zero is odd
+    let is_signed = site.range().0 < 0.0;
+    let (sign, size) =
+        if is_signed { (format!("sgn({x})·"), format!("|{x}|")) } else { (String::new(), x.clone()) };
     let text = match form {
-        Form::Power => format!("a·({x}/{scale})^p"),
-        Form::Saturation => format!("a·min({x}/{corner}, 1)"),
+        Form::Power => format!("a·{sign}({size}/{scale})^p"),
+        Form::Saturation => format!("a·{sign}min({size}/{corner}, 1)"),
         Form::Threshold => format!("k·max({x} − {corner}, 0)"),
         Form::Step => format!("a·[{x} > {corner}]"),
-        Form::Approach => format!("a·(1 − exp(−{x}/{corner}))"),
-        Form::Decay => format!("a·exp(−{x}/{corner})"),
-        Form::Logarithm => format!("a·ln(1 + {x}/{corner})"),
+        Form::Approach => format!("a·{sign}(1 − exp(−{size}/{corner}))"),
+        Form::Decay => format!("a·{sign}exp(−{size}/{corner})"),
+        Form::Logarithm => format!("a·{sign}ln(1 + {size}/{corner})"),
         Form::Harmonic => format!("a·(cos(2π·{x}/P) − 1) + b·sin(2π·{x}/P)"),
         Form::Polynomial(1) => format!("c1·{x}"),
         Form::Polynomial(2) => format!("c1·{x} + c2·{x}²"),
@@ -51,14 +55,18 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
     let corner = format!("{}_0", latex_of(variable));
     let unit = unit.replace('·', r"{\cdot}").replace('µ', r"\mu ");
     let scale = if unit.is_empty() { largest } else { format!(r"{largest}\,\mathrm{{{unit}}}") };
+    let (sign, size) = match is_signed {
+        true => (format!(r"\,\operatorname{{sgn}}\left({x}\right)"), format!(r"\left|{x}\right|")),
+        false => (String::new(), x.clone()),
+    };
     let latex = match form {
-        Form::Power => format!(r"a\left(\frac{{{x}}}{{{scale}}}\right)^{{p}}"),
-        Form::Saturation => format!(r"a\,\min\left(\frac{{{x}}}{{{corner}}}, 1\right)"),
+        Form::Power => format!(r"a{sign}\left(\frac{{{size}}}{{{scale}}}\right)^{{p}}"),
+        Form::Saturation => format!(r"a{sign}\,\min\left(\frac{{{size}}}{{{corner}}}, 1\right)"),
         Form::Threshold => format!(r"k\,\max({x} - {corner}, 0)"),
         Form::Step => format!(r"a\,[{x} > {corner}]"),
-        Form::Approach => format!(r"a\left(1 - e^{{-{x}/{corner}}}\right)"),
-        Form::Decay => format!(r"a\,e^{{-{x}/{corner}}}"),
-        Form::Logarithm => format!(r"a\,\ln\left(1 + \frac{{{x}}}{{{corner}}}\right)"),
+        Form::Approach => format!(r"a{sign}\left(1 - e^{{-{size}/{corner}}}\right)"),
+        Form::Decay => format!(r"a{sign}\,e^{{-{size}/{corner}}}"),
+        Form::Logarithm => format!(r"a{sign}\,\ln\left(1 + \frac{{{size}}}{{{corner}}}\right)"),
         Form::Harmonic => {
             format!(r"a\left(\cos\frac{{2\pi {x}}}{{P}} - 1\right) + b\sin\frac{{2\pi {x}}}{{P}}")
         }

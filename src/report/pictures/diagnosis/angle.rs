@@ -83,7 +83,7 @@ fn panel(joint: &AngleError, which: usize, title: &str) -> Chart {
 }
 
 /// A dot for each pose. Of very many the mean and the scatter of neighbours; where the curve turns
-/// so often that means would level it, every so manieth pose.
+/// so often that means would level it, one pose in several.
 fn poses(joint: &AngleError, which: usize) -> Mark {
     let drawn: Vec<[f64; 2]> = joint
         .poses
@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn very_many_poses_are_means_with_their_scatter_or_every_so_manieth() {
+    fn very_many_poses_are_means_with_their_scatter_or_some_of_them() {
         let error = |q: usize| if q.is_multiple_of(2) { 10.0 } else { -10.0 };
         let many: Vec<[f64; 3]> = (0..1200).map(|q| [q as f64 / 10.0, error(q), 0.0]).collect();
         let curve = |waves: f64| {

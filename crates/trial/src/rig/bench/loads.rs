@@ -8,6 +8,9 @@ use crate::rig::effect::Effect;
 use crate::rig::load_history::{Plays, friction_after, slipped_after};
 use crate::rig::protocol::Loading;
 
+/// A travel over which friction turns round that no reading shows, m.
+const AT_ONCE: f64 = 1e-9;
+
 impl Bench {
     /// The force that the rod carries at each loading, N.
     pub(super) fn forces(&self, effects: &[Effect]) -> Vec<Vector3<f64>> {
@@ -15,12 +18,16 @@ impl Bench {
         for effect in effects {
             match *effect {
                 Effect::Friction { axis, force, presliding, scatter } => {
-                    self.rub(&mut felt, axis, force, presliding, scatter);
+                    self.rub(&mut felt, axis, &|_| force, (presliding, scatter));
                 }
                 Effect::Hysteresis { fraction, is_exercised } => self.lag(&mut felt, fraction, is_exercised),
                 Effect::Damping { share, time } => self.damp(&mut felt, share, time),
                 Effect::LoadBefore(share) => self.follow_load_before(&mut felt, share),
-                Effect::WearingFriction { first, last } => self.wear(&mut felt, first, last),
+                Effect::WearingFriction { first, last } => {
+                    let last_run = self.protocol.loadings.iter().map(|l| l.run).max().unwrap_or(0).max(1);
+                    let force = |l: &Loading| first + (last - first) * l.run as f64 / last_run as f64;
+                    self.rub(&mut felt, None, &force, (AT_ONCE, 0.0));
+                }
                 Effect::SpeedOfLoading(share) => self.hurry(&mut felt, share),
                 _ => {}
             }
@@ -56,7 +63,13 @@ impl Bench {
     }
 
     /// Friction takes its share of the loads on the way up and holds them on the way down.
-    fn rub(&self, felt: &mut [f64], axis: Option<usize>, force: f64, presliding: f64, scatter: f64) {
+    fn rub(
+        &self,
+        felt: &mut [f64],
+        axis: Option<usize>,
+        force: &dyn Fn(&Loading) -> f64,
+        (presliding, scatter): (f64, f64),
+    ) {
         let compliance = self.compliance();
         let (mut z, mut hung, mut held) = (0.0, 0.0, 0.0);
         let loadings = &self.protocol.loadings;
@@ -68,7 +81,7 @@ impl Bench {
                 continue;
             }
             let hanging = felt[index];
-            z = friction_after(z, force, (hanging - hung) * compliance[loading.axis], presliding);
+            z = friction_after(z, force(loading), (hanging - hung) * compliance[loading.axis], presliding);
             let mut carried = hanging - z * (1.0 + scatter * self.sticking[index]);
             if loading.is_unloading {
                 // a slide that sticks holds the rod where it was
@@ -119,28 +132,7 @@ impl Bench {
         }
     }
 
-    /// Friction as in [`Bench::rub`], without presliding, of another force in each run.
-    fn wear(&self, felt: &mut [f64], first: f64, last: f64) {
-        let (mut hung, mut held) = (0.0, 0.0f64);
-        let loadings = &self.protocol.loadings;
-        let runs = loadings.iter().map(|l| l.run).max().unwrap_or(0).max(1) as f64;
-        for (index, loading) in loadings.iter().enumerate() {
-            if self.is_first(index) {
-                (hung, held) = (0.0, 0.0);
-            }
-            let hanging = felt[index];
-            let force = first + (last - first) * loading.run as f64 / runs;
-            let carried = match hanging - hung {
-                change if change > 0.0 => (hanging - force).max(held).min(hanging),
-                change if change < 0.0 => (hanging + force).min(held),
-                _ => held,
-            };
-            (hung, held) = (hanging, if loading.load == 0.0 { 0.0 } else { carried });
-            felt[index] = held;
-        }
-    }
-
-    /// A rod that is loaded fast gives way by another share.
+    /// A rod that is loaded fast is softer, or stiffer, by a share.
     fn hurry(&self, felt: &mut [f64], share: f64) {
         let (hanging, loadings) = (felt.to_vec(), &self.protocol.loadings);
         for index in 1..felt.len() {

@@ -98,13 +98,12 @@ fn softer_is_more() {
 
 #[test]
 fn friction_that_wears_holds_more_back_in_every_run() {
-    let (bench, mut expected) = (bench(), [0.1, 0.2].into_iter());
+    let bench = bench();
     let c = bench.compliance()[1];
     let (clean, with) =
         (bench.readings(&[]), bench.readings(&[Effect::WearingFriction { first: 0.1, last: 0.3 }]));
     // the first load up and the last one down of the first two of three runs
-    for run in [0, 6] {
-        let force = expected.next().unwrap();
+    for (run, force) in [(0, 0.1), (6, 0.2)] {
         let change = |loading: usize| with[3 * loading + 1] - clean[3 * loading + 1];
         assert!((change(run) / (-force * c) - 1.0).abs() < 0.01, "{force}");
         assert!((change(run + 4) / (force * c) - 1.0).abs() < 0.01, "{force}");

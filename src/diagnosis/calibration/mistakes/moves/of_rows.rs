@@ -1,8 +1,6 @@
 //! What may have gone wrong with some rows alone.
 
-use nalgebra::Matrix3;
-
-use super::super::super::effects::mistakes::{OFFSET_MISTAKE, ROW_MISTAKE, UNIT_MISTAKE};
+use super::super::super::effects::mistakes::{OFFSET_MISTAKE, ROW_MISTAKE};
 use super::super::draft::{Cell, Draft, DraftChange};
 use super::super::names::AXES;
 use super::{List, PossibleMistake, UNUSUAL, exact};
@@ -22,7 +20,6 @@ pub fn of_rows(campaign: &Campaign, draft: &Draft) -> Vec<PossibleMistake> {
     let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: true };
     list.joints();
     list.positions();
-    list.single_units();
     list.rows();
     list.exchanged();
     list.displaced_columns();
@@ -58,27 +55,6 @@ impl List<'_> {
             let change = DraftChange::Zero { joint, by: 0.0 };
             self.add(&OFFSET_MISTAKE, Key::new(&name), change, "", "the joint's zero is another one there")
                 .log_prior = ANY_ANGLE;
-        }
-    }
-
-    /// A single column of a measured point in another unit.
-    pub fn single_units(&mut self) {
-        if self.draft.has_sockets() {
-            return;
-        }
-        for (axis, name) in AXES.into_iter().enumerate() {
-            for (factor, unit) in [(1e3, "metres"), (25.4, "inches"), (1e-3, "micrometres")] {
-                let mut matrix = Matrix3::identity();
-                matrix[(axis, axis)] = factor;
-                let by = if factor < 1.0 {
-                    format!("Divide {name} by {}", 1.0 / factor)
-                } else {
-                    format!("Multiply {name} by {factor}")
-                };
-                let why = format!("it is in {unit}, not in millimetres");
-                let unit = self.add(&UNIT_MISTAKE, Key::new(name), DraftChange::Seen(matrix), &by, &why);
-                (unit.estimates, unit.log_prior) = (exact("factor", factor), UNUSUAL);
-            }
         }
     }
 }

@@ -36,11 +36,7 @@ impl List<'_> {
             if factor < 1.0 && !is_far && !self.is_of_rows {
                 continue;
             }
-            let by = if factor < 1.0 {
-                format!("Divide {ALL} by {}", 1.0 / factor)
-            } else {
-                format!("Multiply {ALL} by {factor}")
-            };
+            let by = times(ALL, factor);
             let change = DraftChange::Seen(Matrix3::identity() * factor);
             let unit = self.add(
                 &UNIT_MISTAKE,
@@ -51,6 +47,7 @@ impl List<'_> {
             );
             (unit.estimates, unit.log_prior) = (exact("factor", factor), log_prior);
         }
+        self.single_units(is_clamped);
         let names = AXES;
         for order in [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]] {
             for signs in 0..8u8 {
@@ -100,6 +97,25 @@ impl List<'_> {
         }
     }
 
+    /// A single column of a measured point in another unit.
+    fn single_units(&mut self, is_clamped: bool) {
+        for (axis, name) in AXES.into_iter().enumerate() {
+            let sizes: Vec<f64> = self.draft.seen.iter().map(|seen| seen[axis].abs()).collect();
+            for (factor, unit) in [(1e3, "metres"), (25.4, "inches"), (1e-3, "micrometres")] {
+                let is_far = || median(&sizes).is_some_and(|size| size > DISPLACEMENT);
+                if factor < 1.0 && is_clamped && !self.is_of_rows && !is_far() {
+                    continue;
+                }
+                let mut matrix = Matrix3::identity();
+                matrix[(axis, axis)] = factor;
+                let by = times(name, factor);
+                let why = format!("it is in {unit}, not in millimetres");
+                let unit = self.add(&UNIT_MISTAKE, Key::new(name), DraftChange::Seen(matrix), &by, &why);
+                (unit.estimates, unit.log_prior) = (exact("factor", factor), UNUSUAL);
+            }
+        }
+    }
+
     pub(super) fn rows(&mut self) {
         if self.draft.has_sockets() {
             return;
@@ -123,5 +139,13 @@ impl List<'_> {
                     if count == 1 { 0.0 } else { UNUSUAL } + if with_clamps { UNUSUAL } else { 0.0 };
             }
         }
+    }
+}
+
+/// What to do with columns that are to be multiplied.
+fn times(columns: &str, factor: f64) -> String {
+    match factor < 1.0 {
+        true => format!("Divide {columns} by {}", 1.0 / factor),
+        false => format!("Multiply {columns} by {factor}"),
     }
 }

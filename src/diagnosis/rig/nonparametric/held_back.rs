@@ -63,9 +63,29 @@ fn held(data: &[Datum], slopes: &[f64]) -> Option<Vec<f64>> {
         match (datum.imposed, datum.motion) {
             (Some(imposed), Some(motion)) => imposed.per_newton * motion.direction,
             (_, Some(motion)) => -slope * motion.direction,
-            (_, None) if datum.drive() == 0.0 => 0.0,
-            (_, None) => -slope * away * datum.drive().signum(),
+            // nothing hangs there yet; a slide that was unloaded still holds the rod
+            (_, None) if datum.load == 0.0 && !datum.is_unloading() => 0.0,
+            (_, None) => -slope * away * f64::from(datum.direction.sign),
         }
     };
     Some(data.iter().zip(slopes).map(of_datum).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::rig::recording::datum;
+    use crate::rig::readings::Readings;
+
+    #[test]
+    fn it_is_held_back_on_the_way_up_and_kept_on_the_way_down_to_nothing() {
+        let text = "axis,load_n,phase,dy_um\n-y,0,load,0\n-y,5,load,1\n-y,10,load,2\n-y,10,unload,2\n\
+                    -y,5,unload,1\n-y,0,unload,0\n";
+        let data = datum::all(&Readings::from_text("f", text).unwrap().rows);
+        // the rod gives way along the load: to −y; the top that is read once more has not moved
+        let held = held(&data, &[1e-6; 6]).unwrap();
+        assert_eq!(held, [0.0, 1e-6, 1e-6, 1e-6, -1e-6, -1e-6]);
+        // of loads that only grow it would be an error of the load
+        assert!(super::held(&data[..3], &[1e-6; 3]).is_none());
+    }
 }

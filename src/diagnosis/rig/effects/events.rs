@@ -21,9 +21,6 @@ const STEP: f64 = 0.05;
 /// Most places in a run that are tried; of a longer run every second one, or fewer.
 const MOST_SLIPS: usize = 200;
 
-/// Of two runs nobody knows which of them has its zero off.
-const FEWEST_RUNS: usize = 3;
-
 /// Of a longer recording a shift for good is looked for between runs only.
 const MOST_ROWS_WITHIN: usize = 1000;
 
@@ -105,8 +102,8 @@ fn slips(context: &mut Context) -> Vec<Entry> {
     within.into_iter().chain(for_good(data, size)).collect()
 }
 
-/// Everything after a row is shifted for good: of each sensor, between any two of three runs or
-/// more, and within a run, with two rows of it and a run on either side. A channel that is
+/// Everything after a row is shifted for good: of each sensor, between any two runs with runs on
+/// either side, and within a run, with two rows of it and a run on either side. A channel that is
 /// read at one place in each run is one sensor, which is moved from place to place, and with it
 /// goes what shifted it.
 fn for_good(data: &[Datum], size: f64) -> Vec<Entry> {
@@ -132,10 +129,7 @@ fn for_good(data: &[Datum], size: f64) -> Vec<Entry> {
         let last_of_run: BTreeMap<usize, usize> = sequence.iter().map(|&i| (data[i].run, i)).collect();
         let mut last_of_run: Vec<usize> = last_of_run.into_values().collect();
         last_of_run.sort_by_key(|&last| data[last].order);
-        let mut rows: Vec<usize> = match last_of_run.len() < FEWEST_RUNS {
-            true => Vec::new(),
-            false => last_of_run.iter().rev().skip(1).copied().collect(),
-        };
+        let mut rows: Vec<usize> = last_of_run.iter().skip(1).rev().skip(2).copied().collect();
         if sequence.len() <= MOST_ROWS_WITHIN {
             let ends = [sequence.first(), sequence.last()].map(|end| end.map(|&i| data[i].run));
             let is_within = |rows: &&[usize]| {

@@ -40,10 +40,9 @@ z,5,1,23,0,200
     assert_eq!(model.candidates().iter().filter(|c| c.effect.name == "slip").count(), 2);
 }
 
-/// Every boundary counts, the first and the last too, but not the only one: of two runs either may
-/// have its zero off.
+/// A single run that is off, the first or the last, has a zero that is off: nothing slipped.
 #[test]
-fn a_sensor_may_slip_for_good_between_any_two_of_three_runs() {
+fn what_slips_for_good_is_two_runs_at_least_on_either_side() {
     let run = |trial: usize| format!("y,5,{trial},230\ny,10,{trial},460\n");
     let slips = |runs: usize| {
         let text = "axis,load_n,trial,dy_um\n".to_owned() + &(1..=runs).map(run).collect::<String>();
@@ -51,10 +50,8 @@ fn a_sensor_may_slip_for_good_between_any_two_of_three_runs() {
         let slips = model.candidates().iter().filter(|c| c.effect.name == "slip");
         slips.map(|c| c.location.to_string()).collect::<Vec<_>>()
     };
-    let mut three = slips(3);
-    three.sort();
-    assert_eq!(three, ["y, trial 1, after row 2, dy, for good", "y, trial 2, after row 4, dy, for good"]);
-    assert!(slips(2).is_empty());
+    assert!(slips(3).is_empty());
+    assert_eq!(slips(4), ["y, trial 2, after row 4, dy, for good"]);
 }
 
 /// However slowly: what is said is how far the readings have drifted by the end, since the first of

@@ -15,8 +15,8 @@
 //! way, is one rival and not many.
 //!
 //! What the load before leaves behind, the time since its change and the speed of that multiply
-//! deflections ([`before`]). A force against the motion that is not the same throughout has its size
-//! as a curve ([`held_back`]).
+//! deflections ([`before`]). A force against the motion that is not the same throughout has its
+//! size as a curve ([`held_back`]).
 //!
 //! What is softer along the rod here than there is a curve over its stations ([`station`]).
 //!

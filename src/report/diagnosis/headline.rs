@@ -99,8 +99,8 @@ fn scatter_of(subject: &Subject) -> String {
     }
 }
 
-/// Is the scatter neither stated nor shown by repeats? It is then estimated from the residual, which
-/// the fit has made smaller than it.
+/// Is the scatter neither stated nor shown by repeats? It is then estimated from the residual,
+/// which the fit has made smaller than it.
 pub fn is_scatter_estimated(subject: &Subject) -> bool {
     subject.diagnosis.noise_test.stated.is_none() && subject.diagnosis.lack_of_fit_after.is_none()
 }

@@ -61,8 +61,9 @@ impl Before {
     }
 
     /// How fast the load was changed to what it is, N/s (m/s of an imposed displacement):
-    /// v = (F − F′)/Δt, positive where it grew, Δt from the reading before until it hung, else until it is read; at the first reading of a
-    /// run the usual one. Nothing where it is always the same at the same load.
+    /// v = (F − F′)/Δt, positive where it grew, Δt from the reading before until it hung, else
+    /// until it is read; at the first reading of a run the usual one. Nothing where it is always
+    /// the same at the same load.
     pub fn speeds(&self, data: &[Datum]) -> Option<Vec<f64>> {
         let times: Vec<f64> = data.iter().map(|d| d.time).collect::<Option<_>>()?;
         let usual = dwell(data, &times);

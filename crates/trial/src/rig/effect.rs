@@ -85,8 +85,8 @@ pub enum Effect {
     /// Friction of a slide that wears: N in the first run, N in the last, growing evenly between.
     WearingFriction { first: f64, last: f64 },
     /// A rod whose stiffness depends on the speed of loading: displacement ×
-    /// (1 + k·log₁₀(1 + |v|/v₀)), v the change of the load over the time between two readings, v₀ a thousandth of the largest
-    /// load per second.
+    /// (1 + k·log₁₀(1 + |v|/v₀)), v the change of the load over the time between two readings, v₀ a
+    /// thousandth of the largest load per second.
     SpeedOfLoading(f64),
     /// A clamp that slips little by little: `per_newton`·z, m, along the load, z (N) by the
     /// equation of Bouc and Wen. SimulatedCase to order only.

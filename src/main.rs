@@ -19,9 +19,9 @@ fn main() -> ExitCode {
         Ok(status) => status,
         Err(error) => {
             let word = cli::output::coloured("error:", cli::output::RED);
-            cli::output::say(&word, &error.to_string());
+            cli::output::to_stderr(&word, &error.to_string());
             if let Some(hint) = error.hint() {
-                cli::output::say("hint:", hint);
+                cli::output::to_stderr("hint:", hint);
             }
             ExitCode::from(2)
         }

@@ -158,7 +158,7 @@ pub fn deliver(options: &Options, command: &Command, started: Instant, outcome: 
     let directory = options.out.clone().or(default_directory);
     let note = |line: &dyn Fn() -> String| {
         if options.verbose {
-            say("", &line());
+            to_stderr("", &line());
         }
     };
     let mut written = Vec::new();
@@ -308,7 +308,7 @@ pub fn coloured(word: &str, colour: u8) -> String {
 /// A line on stderr after a word of the program's own. Nobody may be listening (`2>&1 | head`), and
 /// `eprintln!` would panic. Names of files and what stands in them may hold anything: it is shown,
 /// not obeyed.
-pub fn say(word: &str, line: &str) {
+pub fn to_stderr(word: &str, line: &str) {
     let space = if word.is_empty() { "" } else { " " };
     let _ = writeln!(std::io::stderr(), "{word}{space}{}", visible(line));
 }
@@ -322,7 +322,7 @@ fn warn(warning: &str) {
             let rest = lines.strip_prefix(word).unwrap_or(&lines);
             let _ = write!(std::io::stderr(), "{}{rest}", coloured(word, YELLOW));
         }
-        false => say(word, warning),
+        false => to_stderr(word, warning),
     }
 }
 

@@ -59,7 +59,7 @@ impl Figure {
     }
 
     /// What it is, and its unit.
-    pub fn words(self) -> (&'static str, &'static str) {
+    pub fn name_and_unit(self) -> (&'static str, &'static str) {
         match self {
             Figure::CRod => ("c_rod", "µm"),
             Figure::CfMax => ("largest C^F", "µm/N"),

@@ -83,7 +83,7 @@ impl Part {
     }
 
     /// In tables and pictures.
-    pub fn words(self) -> &'static str {
+    pub fn description(self) -> &'static str {
         [
             "noise of the calibration",
             "not shown by the poses",

@@ -98,7 +98,7 @@ impl Impossible {
     }
 
     /// For people.
-    pub fn words(self) -> &'static str {
+    pub fn description(self) -> &'static str {
         match self {
             Impossible::BendDoesNotFit => "the bend does not fit between the pipes",
             Impossible::BendTighterThanTube => "the bend is tighter than the tube is thick",

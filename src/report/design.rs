@@ -149,7 +149,7 @@ fn what_counts(study: &Study) -> Section {
     let last = study.shown.len().saturating_sub(1);
     let mut picked = vec![0, last / 2, last];
     picked.dedup();
-    let heads = COUNTED.map(|figure| figure.words().0);
+    let heads = COUNTED.map(|figure| figure.name_and_unit().0);
     let mut blocks = vec![Block::Paragraph(
         "Change of each figure by 1 % more of one number, all others kept; exact derivatives. The JSON has those of all \
          designs that are shown, in the units of the rod file."
@@ -213,7 +213,7 @@ pub fn headline(study: &Study) -> String {
     let spans = study.space.goals.iter().map(|goal| {
         let values = || found.front.iter().filter_map(|design| design.figures.get(goal.figure));
         let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
-        let (name, unit) = goal.figure.words();
+        let (name, unit) = goal.figure.name_and_unit();
         let number = |value: f64| significant(value, 3);
         let span = if low == high { number(low) } else { format!("{} to {}", number(low), number(high)) };
         format!("{name} {span} {unit}").trim_end().to_owned()
@@ -244,7 +244,7 @@ fn nothing_fits(study: &Study, all: &str) -> String {
         None => {
             let reasons = Impossible::ALL.iter().zip(study.found.impossible).filter(|(_, count)| *count > 0);
             let reasons: Vec<String> =
-                reasons.map(|(why, count)| format!("{} ({count})", why.words())).collect();
+                reasons.map(|(why, count)| format!("{} ({count})", why.description())).collect();
             format!("None of {all} can be built: {}.", reasons.join("; "))
         }
     }
@@ -261,7 +261,7 @@ fn needed(limit: &Limit, to: f64) -> String {
 
 fn front(study: &Study) -> Vec<Block> {
     let goals = study.space.goals.iter().map(|goal| {
-        let (name, _) = goal.figure.words();
+        let (name, _) = goal.figure.name_and_unit();
         format!("{} {name}", if goal.is_maximised { "larger" } else { "smaller" })
     });
     let goals: Vec<String> = goals.collect();
@@ -311,7 +311,7 @@ fn front_table(study: &Study) -> Table {
     let mut heads = vec![Column::text("design"), Column::text("tube")];
     heads.extend(shape_columns());
     heads.extend(figures.iter().map(|figure| {
-        let (name, unit) = figure.words();
+        let (name, unit) = figure.name_and_unit();
         Column::number(name, unit)
     }));
     heads.push(Column::text("indistinguishable from"));
@@ -371,7 +371,7 @@ fn nearest(study: &Study) -> Vec<Block> {
             limit_name(&relaxed.limit),
             significant(relaxed.limit.value, DIGITS),
             needed(&relaxed.limit, relaxed.to),
-            relaxed.limit.figure.words().1.to_owned(),
+            relaxed.limit.figure.name_and_unit().1.to_owned(),
         ];
         if let Ok(rod) = study.space.rod(relaxed.design.index) {
             cells.extend(shape_cells(&rod));
@@ -401,7 +401,7 @@ fn nearest(study: &Study) -> Vec<Block> {
                 limit_name(limit),
                 significant(limit.value, DIGITS),
                 significant(value, DIGITS),
-                limit.figure.words().1.to_owned(),
+                limit.figure.name_and_unit().1.to_owned(),
             ];
             if let Ok(rod) = study.space.rod(design.index) {
                 cells.extend(shape_cells(&rod));
@@ -426,7 +426,7 @@ fn looked_at(study: &Study) -> Vec<Block> {
         table.row(vec![limit_words(limit), count.to_string()]);
     }
     for (why, count) in Impossible::ALL.iter().zip(found.impossible).filter(|(_, count)| *count > 0) {
-        table.row(vec![why.words().to_owned(), count.to_string()]);
+        table.row(vec![why.description().to_owned(), count.to_string()]);
     }
     let mut blocks = vec![Block::Paragraph(format!(
         "{} of {} were looked at, with tubes from a catalogue of {}; {} all limits.",

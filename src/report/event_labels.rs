@@ -37,7 +37,7 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], labels: &
     }
     for ((_, text), label) in events.iter().zip(placed) {
         let Some(label) = label else { continue };
-        canvas.fill(&words(&label).corners(), Rgb::WHITE);
+        canvas.fill(&text_area(&label).corners(), Rgb::WHITE);
         canvas.text(label.centre(), text, NOTE, Rgb::INK);
         labels.add_text(label);
     }
@@ -68,8 +68,8 @@ fn places(within: &Area, wanted: &[(f64, f64)]) -> Vec<Option<Area>> {
         let is_free = |label: &Area| !others.iter().any(|(other, _)| label.touches(other));
         let is_clear = |label: &Area| {
             others.iter().all(|(other, other_x)| {
-                !line_area(within, x, label.bottom).touches(&words(other))
-                    && !line_area(within, *other_x, other.bottom).touches(&words(label))
+                !line_area(within, x, label.bottom).touches(&text_area(other))
+                    && !line_area(within, *other_x, other.bottom).touches(&text_area(label))
             })
         };
         let free: Vec<Area> = (0..lanes).flat_map(in_lane).filter(is_free).collect();
@@ -80,7 +80,7 @@ fn places(within: &Area, wanted: &[(f64, f64)]) -> Vec<Option<Area>> {
 }
 
 /// The part of a label that is written on.
-fn words(label: &Area) -> Area {
+fn text_area(label: &Area) -> Area {
     Area { left: label.left + AIR_PX, right: label.right - AIR_PX, ..*label }
 }
 
@@ -106,7 +106,7 @@ mod tests {
             for (other, at) in
                 placed.iter().zip(wanted).enumerate().filter(|(i, _)| *i != k).map(|pair| pair.1)
             {
-                let crosses = line_area(&PLOT, at.0, other.bottom).touches(&words(label));
+                let crosses = line_area(&PLOT, at.0, other.bottom).touches(&text_area(label));
                 assert!(!(label.touches(other) || is_clear && crosses), "{label:?} over {other:?} at {at:?}");
             }
         }

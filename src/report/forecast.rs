@@ -54,7 +54,7 @@ pub fn table(name: &str, first: &str, all: &[(String, &Forecast)]) -> Table {
 /// The parts of the same forecasts, one per column: with the whole they would be too wide to read.
 pub fn parts_table(name: &str, first: &str, all: &[(String, &Forecast)]) -> Table {
     let mut columns = vec![Column::text(first)];
-    columns.extend(parts(all).into_iter().map(|part| Column::number(part.words(), "µm")));
+    columns.extend(parts(all).into_iter().map(|part| Column::number(part.description(), "µm")));
     let caption =
         "Root mean square of each part of the error alone: their squares add up to that of the whole.";
     let mut table = Table::new(name, caption, columns);
@@ -107,7 +107,7 @@ pub fn stacked(all: &[(String, &Forecast)]) -> Figure {
         };
         let (colour, dash) = COLOURS[*part as usize];
         chart.marks.push(Mark::Bars {
-            label: part.words().into(),
+            label: part.description().into(),
             bars: all.iter().enumerate().map(bar).collect(),
             direction: Direction::Right,
             style: Style::nth(0).colour(colour).dash(dash),
@@ -160,7 +160,7 @@ pub struct Basis {
 
 impl Basis {
     /// In sentences.
-    pub fn words(&self) -> String {
+    pub fn description(&self) -> String {
         let aligned = if self.is_aligned { "; base and tool are aligned anew there" } else { "" };
         let um = |size: f64| significant(size / UM, 3);
         let clamps = match self.budget.clamps > 0.0 {
@@ -219,7 +219,9 @@ fn cards(rods: &[RodForecast]) -> Vec<Card> {
         ),
         Card::new("95 % of unseen poses are better than", um(least.p95), with),
     ];
-    cards.extend(largest.map(|part| Card::new("Largest part", um(least.parts[part as usize]), part.words())));
+    cards.extend(
+        largest.map(|part| Card::new("Largest part", um(least.parts[part as usize]), part.description())),
+    );
     cards
 }
 
@@ -274,7 +276,7 @@ pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> R
         })
         .collect();
     let mut blocks = vec![
-        Block::Paragraph(basis.words()),
+        Block::Paragraph(basis.description()),
         Block::Paragraph(format!("Poses: {}.", poses.join("; "))),
         Block::Figure(stacked(&all)),
         Block::Table(table("forecast", "rod and mode", &all)),

@@ -225,7 +225,7 @@ pub fn headline(study: &PoseStudy) -> String {
 fn assumptions(study: &PoseStudy) -> String {
     let (budget, unseen) = (study.budget.clone(), study.unseen.clone());
     let has_clamps = !study.campaign.clamps.is_empty();
-    forecast::Basis { budget, unseen, is_aligned: study.is_aligned, has_clamps }.words()
+    forecast::Basis { budget, unseen, is_aligned: study.is_aligned, has_clamps }.description()
 }
 
 fn places(study: &PoseStudy) -> Table {
@@ -262,7 +262,7 @@ fn places(study: &PoseStudy) -> Table {
 }
 
 fn worth(study: &PoseStudy) -> Vec<Block> {
-    let (name, unit) = study.wanted.criterion.words();
+    let (name, unit) = study.wanted.criterion.name_and_unit();
     let better = if study.wanted.criterion.is_larger_better() { "larger" } else { "smaller" };
     let number = |value: f64| format!("{} {unit}", significant(value, 4)).trim_end().to_owned();
     let same = match study.wanted.criterion {

@@ -168,7 +168,7 @@ fn not_distinguished(plan: &RigPlan) -> Vec<String> {
     };
     let words = |one: &Distinguished| {
         let short = short(one);
-        let from = one.against.map_or("nothing".to_owned(), |other| spoken(other.name));
+        let from = one.against.map_or("nothing".to_owned(), |other| other.title());
         let places = match short.len() {
             0 => return None,
             count if count == one.places.len() => String::new(),
@@ -177,14 +177,10 @@ fn not_distinguished(plan: &RigPlan) -> Vec<String> {
         };
         Some(format!(
             "{}{places} cannot be distinguished from {from} with reasonable effort",
-            spoken(one.effect.name)
+            one.effect.title()
         ))
     };
     plan.distinguished.iter().filter_map(words).collect()
-}
-
-fn spoken(name: &str) -> String {
-    name.replace('_', " ")
 }
 
 fn measurements(plan: &RigPlan, rod: &Rod) -> Vec<Block> {
@@ -307,8 +303,8 @@ fn will_tell(plan: &RigPlan) -> Vec<Block> {
         picked.dedup();
         for (place, now, best) in picked.into_iter().filter_map(|k| places.get(k)) {
             table.row(vec![
-                spoken(one.effect.name),
-                one.against.map_or("nothing".into(), |other| spoken(other.name)),
+                one.effect.title(),
+                one.against.map_or("nothing".into(), |other| other.title()),
                 place.to_string(),
                 odds(*now),
                 odds(*best),

@@ -334,7 +334,7 @@ impl RodLaw {
 impl fmt::Display for RodLaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let significant = |x: f64| crate::units::significant(x, 3);
-        write!(f, "{} = {} in {} at {}", self.result(), self.formula, self.unit(), self.place.spoken())?;
+        write!(f, "{} = {} in {} at {}", self.result(), self.formula, self.unit(), self.place.description())?;
         for own in &self.constants {
             let number = format!(", {} = {} {}", own.name, significant(own.value), own.unit);
             f.write_str(number.trim_end())?;

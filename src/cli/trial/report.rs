@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::fmt::Display;
 
 use rodcal::report::chart::{Axis, Chart, Colour, Figure, Mark, Marker, Point, Range, Style};
-use rodcal::report::runs::spoken;
+use rodcal::report::runs::name_and_unit;
 use rodcal::report::table::{Column, Table};
 use rodcal::report::{Block, Card, Report, Section, Tone};
 use rodcal::units::significant;
@@ -340,7 +340,7 @@ fn with_units(truth: &str) -> String {
     };
     let said = numbers.split(", ").map(|number| {
         let (name, value) = number.rsplit_once(' ').unwrap_or((number, ""));
-        let (words, unit) = spoken(name);
+        let (words, unit) = name_and_unit(name);
         let value = value.parse().map_or_else(|_| value.to_owned(), |value| significant(value, 3));
         format!("{words} {value} {unit}").trim_end().to_owned()
     });

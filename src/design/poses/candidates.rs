@@ -210,7 +210,7 @@ fn why_not(around: &Surroundings, place: usize, tally: &Tally) -> String {
             Obstacle::Block => format!(" ({} mm)", significant(around.limits.clear / MM, 3)),
             _ => String::new(),
         };
-        format!("in {count} {}{by}", obstacle.words())
+        format!("in {count} {}{by}", obstacle.description())
     });
     let broken: Vec<String> = broken.collect();
     format!("{name} is reached in {reached} of {} postures, but {}", tally.tried, broken.join(", "))
@@ -261,7 +261,7 @@ fn from_table(around: &Surroundings, file: &str, text: &str) -> Result<Candidate
         });
         let counts: Vec<String> = counts
             .filter(|(_, count)| *count > 0)
-            .map(|(obstacle, count)| format!("in {count} {}", obstacle.words()))
+            .map(|(obstacle, count)| format!("in {count} {}", obstacle.description()))
             .collect();
         let gap = significant(nearest / MM, 3);
         let gap =

@@ -37,7 +37,7 @@ impl PoseCriterion {
     }
 
     /// What its value is, with its unit.
-    pub fn words(self) -> (&'static str, &'static str) {
+    pub fn name_and_unit(self) -> (&'static str, &'static str) {
         [
             ("O1", ""),
             ("O4", ""),

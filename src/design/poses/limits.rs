@@ -80,7 +80,7 @@ impl Obstacle {
     }
 
     /// In a sentence.
-    pub fn words(self) -> &'static str {
+    pub fn description(self) -> &'static str {
         [
             "the ball does not reach the clamp",
             "a joint is beyond its limits",

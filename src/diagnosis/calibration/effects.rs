@@ -133,7 +133,8 @@ fn in_file(effects: &[robot::Effect], amount: impl Fn(&robot::Effect) -> Option<
 /// than the robot file says`; `None` where it has nothing.
 fn on_top(what: &str, found: Quantity, unit: &str, in_file: f64) -> Option<String> {
     let word = if found.value < 0.0 { "less" } else { "more" };
-    (in_file != 0.0).then(|| format!("{what} is {} {word} than the robot file says", found.size().say(unit)))
+    (in_file != 0.0)
+        .then(|| format!("{what} is {} {word} than the robot file says", found.size().with_unit(unit)))
 }
 
 /// The parameters as they are.

@@ -29,7 +29,7 @@ impl OwnEffect {
     pub(super) fn observed(&self, finding: &Finding) -> String {
         let stated = |parameter: &Parameter| {
             let quantity = finding.quantity(&parameter.name)?;
-            Some(format!("{} = {}", parameter.name, quantity.say("")))
+            Some(format!("{} = {}", parameter.name, quantity.with_unit("")))
         };
         let numbers: Vec<String> = self.parameters.iter().filter_map(stated).collect();
         let mut letters = self.effect.summary.chars();

@@ -134,7 +134,7 @@ impl Effect {
     };
 
     /// Its name as words: `load offset`.
-    pub fn spoken(&self) -> String {
+    pub fn title(&self) -> String {
         self.name.replace('_', " ")
     }
 }

@@ -113,7 +113,7 @@ pub trait ForwardModel: Sync {
 
     /// A finding in words.
     fn describe(&self, finding: &Finding) -> Description {
-        let observed = format!("{} at {}", finding.effect.spoken(), finding.location);
+        let observed = format!("{} at {}", finding.effect.title(), finding.location);
         Description { observed, cause: finding.effect.cause.to_owned() }
     }
 

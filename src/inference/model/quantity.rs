@@ -38,8 +38,8 @@ impl Quantity {
             return format!("over 1000 times {word}");
         }
         match ratio.value <= 2.0 {
-            true => format!("{} {word}", ratio.map(|ratio| 100.0 * (ratio - 1.0)).say("%")),
-            false => format!("{} times {word}", ratio.say("")),
+            true => format!("{} {word}", ratio.map(|ratio| 100.0 * (ratio - 1.0)).with_unit("%")),
+            false => format!("{} times {word}", ratio.with_unit("")),
         }
     }
 
@@ -47,13 +47,13 @@ impl Quantity {
     /// than half or more than twice as [`Quantity::compared`].
     pub fn misread(self) -> String {
         match self.value < 1.0 && self.value >= 0.5 {
-            true => self.map(|ratio| 100.0 * (1.0 - ratio)).say("%") + " too low",
+            true => self.map(|ratio| 100.0 * (1.0 - ratio)).with_unit("%") + " too low",
             false => self.compared("too high", "too low"),
         }
     }
 
     /// `1.02 ± 0.04 N`; where a bound cuts the interval off, `0.3 (0 to 0.9) N`.
-    pub fn say(&self, unit: &str) -> String {
+    pub fn with_unit(&self, unit: &str) -> String {
         let half = (self.high - self.low) / 2.0;
         let unit = if unit.is_empty() || unit == "°" { unit.to_owned() } else { format!(" {unit}") };
         if !(half.is_finite() && half > 0.0) {
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn a_value_has_the_digits_of_its_uncertainty() {
-        let say = |value, low, high| Quantity { value, low, high }.say("N");
+        let say = |value, low, high| Quantity { value, low, high }.with_unit("N");
         assert_eq!(say(1.0234, 0.98, 1.06), "1.02 ± 0.04 N");
         assert_eq!(say(1.0234, 0.91, 1.136), "1.02 ± 0.11 N");
         assert_eq!(say(0.31, 0.0, 0.92), "0.3 (0.0 to 0.9) N");

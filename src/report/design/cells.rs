@@ -63,13 +63,13 @@ pub fn tube_of(study: &Study, design: &Design) -> String {
 
 /// `mass, at most`.
 pub fn limit_name(limit: &Limit) -> String {
-    let name = limit.figure.words().0;
+    let name = limit.figure.name_and_unit().0;
     format!("{name}, at {}", if limit.is_least { "least" } else { "most" })
 }
 
 /// `mass, at most 900.0 g`.
 pub fn limit_words(limit: &Limit) -> String {
-    let (value, unit) = (significant(limit.value, DIGITS), limit.figure.words().1);
+    let (value, unit) = (significant(limit.value, DIGITS), limit.figure.name_and_unit().1);
     format!("{} {value} {unit}", limit_name(limit))
 }
 

@@ -11,7 +11,7 @@ const DRAWN: usize = 6;
 const POINTS: usize = 24;
 
 fn label(goal: Number) -> String {
-    match goal.words() {
+    match goal.name_and_unit() {
         (name, "") => name.to_owned(),
         (name, unit) => format!("{name} / {unit}"),
     }
@@ -71,7 +71,7 @@ pub fn front(study: &Study) -> Option<Figure> {
             style: Style::nth(1).marker(Marker::Diamond).size(6.0),
         });
     }
-    let (x, y) = (first.figure.words().0, second.figure.words().0);
+    let (x, y) = (first.figure.name_and_unit().0, second.figure.name_and_unit().0);
     let more = if study.space.goals.len() > 2 {
         " Designs that seem bettered here are better in another goal."
     } else {

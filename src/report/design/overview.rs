@@ -22,7 +22,7 @@ pub fn cards(study: &Study) -> Vec<Card> {
         };
         let best = found.front.iter().fold(first, |best, one| if is_better(one, best) { one } else { best });
         let ((name, unit), most) =
-            (goal.figure.words(), if goal.is_maximised { "largest" } else { "smallest" });
+            (goal.figure.name_and_unit(), if goal.is_maximised { "largest" } else { "smallest" });
         let value = format!("{} {unit}", significant(value(best), 3)).trim_end().to_owned();
         cards.push(Card::new(format!("{name}, {most}"), value, tube_of(study, best)));
     }

@@ -41,7 +41,7 @@ pub fn section(study: &Study, found: &Refined) -> Section {
     let mut heads = vec![Column::text(""), Column::text("tube")];
     heads.extend(shape_columns());
     heads.extend(figures.iter().map(|figure| {
-        let (name, unit) = figure.words();
+        let (name, unit) = figure.name_and_unit();
         Column::number(name, unit)
     }));
     let word = goal_words(study, found);
@@ -102,7 +102,7 @@ pub fn section(study: &Study, found: &Refined) -> Section {
 /// What is bettered: "c_rod", or "the mean of c_rod (weight 0.67) and mass (weight 0.33)".
 fn goal_words(study: &Study, found: &Refined) -> String {
     let weighed = study.space.goals.iter().zip(&found.weights).filter(|(_, weight)| **weight > 0.0);
-    let words = |(goal, weight): (&Goal, &f64)| (goal.figure.words().0, significant(*weight, 2));
+    let words = |(goal, weight): (&Goal, &f64)| (goal.figure.name_and_unit().0, significant(*weight, 2));
     let all: Vec<(&str, String)> = weighed.map(words).collect();
     match &all[..] {
         [(only, _)] => (*only).to_owned(),

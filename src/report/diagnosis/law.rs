@@ -156,7 +156,7 @@ fn at(site: &Site) -> String {
 fn quantity(constant: &Constant) -> String {
     let Constant { value, low, high, unit, .. } = constant;
     if constant.also.is_empty() {
-        return Quantity { value: *value, low: *low, high: *high }.say(unit);
+        return Quantity { value: *value, low: *low, high: *high }.with_unit(unit);
     }
     let others: Vec<String> = constant.also.iter().map(|other| significant(*other, 3)).collect();
     with_unit(format!("{} (or {})", significant(*value, 3), others.join(", ")), unit)

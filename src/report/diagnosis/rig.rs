@@ -137,7 +137,7 @@ fn nominal(found: &RigDiagnosis) -> Option<String> {
     let stated = 100.0 * gradient.norm();
     let half = 196.0 * gradient.dot(&(covariance * &gradient)).max(0.0).sqrt();
     let word = if value >= 0.0 { "above" } else { "below" };
-    let share = Quantity { value, low: value - half, high: value + half }.size().say("%");
+    let share = Quantity { value, low: value - half, high: value + half }.size().with_unit("%");
     let number = &moved.number;
     // a share of a diameter is no share of the stiffness
     let known = format!("{} {}", significant(number.standard_uncertainty / number.si, 2), number.unit);
@@ -237,7 +237,7 @@ fn of_numbers(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
             false => (Quantity { value, low, high }, "above"),
         };
         let stated = significant(number.standard_uncertainty / number.si, 2);
-        let off = off.say(number.unit);
+        let off = off.with_unit(number.unit);
         format!("{} {off} {word} the file's (stated uncertainty {stated} {})", number.name, number.unit)
     };
     let is_far = |moved: &&NominalEstimate| moved.moved().abs() > FAR;

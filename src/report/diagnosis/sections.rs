@@ -103,7 +103,7 @@ fn not_seen(subject: &Subject) -> Option<Section> {
     let hidden = hidden(subject).into_iter().map(|(effect, places)| {
         format!("{} ({}): the parameters of the calibration absorb it.", named(effect), places.join(", "))
     });
-    let lacking = subject.not_testable.iter().map(|not| format!("{}: {}", not.effect.spoken(), not.reason));
+    let lacking = subject.not_testable.iter().map(|not| format!("{}: {}", not.effect.title(), not.reason));
     let points: Vec<String> = hidden.chain(lacking).collect();
     (!points.is_empty()).then(|| Section::new("What could not be tested", vec![Block::List(points)]))
 }

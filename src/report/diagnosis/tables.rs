@@ -26,7 +26,7 @@ fn chance(p: f64) -> String {
 /// What an effect is called among others.
 pub fn named(effect: &Effect) -> String {
     // it explains much because it may be anything: no cause
-    if effect == &UNKNOWN { "any smooth curve".into() } else { effect.spoken() }
+    if effect == &UNKNOWN { "any smooth curve".into() } else { effect.title() }
 }
 
 /// All numbers that were found; effect, place and chance stand in the first row of each finding.
@@ -47,7 +47,7 @@ pub fn parameters(findings: &[Finding]) -> Table {
     for finding in findings {
         if finding.estimates.is_empty() {
             // a wrong sign has a place and no number
-            let (effect, place) = (finding.effect.spoken(), finding.location.to_string());
+            let (effect, place) = (finding.effect.title(), finding.location.to_string());
             let none = String::new;
             let p = chance(finding.p_value);
             table.row([effect, place, none(), none(), none(), none(), none(), p]);
@@ -57,7 +57,7 @@ pub fn parameters(findings: &[Finding]) -> Table {
             let numbers = [estimate.value, estimate.low, estimate.high];
             let [value, low, high] = with_ends(numbers.map(|x| x / estimate.unit.si), 4);
             table.row([
-                first(finding.effect.spoken()),
+                first(finding.effect.title()),
                 first(finding.location.to_string()),
                 meaning(finding, estimate),
                 estimate.unit.symbol.to_owned(),

@@ -155,7 +155,7 @@ fn parameter(json: &Value) -> Option<Quantity> {
     let name = json["name"].as_str()?.replace('_', " ");
     let std_error = json["std_error"].as_f64().filter(|_| json["identifiable"].as_bool() != Some(false));
     let given = json["unit"].as_str().unwrap_or_default();
-    let unit = match spoken(&format!("_{given}")) {
+    let unit = match name_and_unit(&format!("_{given}")) {
         (words, unit) if words.is_empty() => unit,
         _ => given.to_owned(),
     };
@@ -218,7 +218,7 @@ fn finding_name(finding: &Value) -> String {
 
 /// A parameter of a finding; its 95 % interval gives its standard error.
 fn found(finding: &str, json: &Value) -> Option<Quantity> {
-    let (name, unit) = spoken(json["name"].as_str()?);
+    let (name, unit) = name_and_unit(json["name"].as_str()?);
     let width = json["hi"].as_f64().zip(json["lo"].as_f64()).map(|(hi, lo)| hi - lo);
     let quantity = plain(format!("{finding}: {name}"), &unit, json["value"].as_f64()?);
     Some(Quantity { std_error: width.map(|width| width / (2.0 * HALF_95)), ..quantity })
@@ -228,7 +228,7 @@ fn found(finding: &str, json: &Value) -> Option<Quantity> {
 fn figures(json: &Value, prefix: &str) -> Vec<Quantity> {
     let mut figures = Vec::new();
     for (key, value) in json.as_object().into_iter().flatten() {
-        let (name, unit) = spoken(key);
+        let (name, unit) = name_and_unit(key);
         match value {
             Value::Number(number) => {
                 figures.extend(number.as_f64().map(|value| plain(format!("{prefix}{name}"), &unit, value)));
@@ -243,7 +243,7 @@ fn figures(json: &Value, prefix: &str) -> Vec<Quantity> {
 }
 
 /// The words of a key and the unit at its end: "bending", "µrad/(N·m)" of `bending_urad_per_nm`.
-pub fn spoken(key: &str) -> (String, String) {
+pub fn name_and_unit(key: &str) -> (String, String) {
     const UNITS: [(&str, &str); 17] = [
         ("_um_per_mm", "µm/mm"),
         ("_um_per_n", "µm/N"),
@@ -296,9 +296,9 @@ mod tests {
 
     #[test]
     fn a_unit_is_no_word() {
-        assert_eq!(spoken("heldout_before_um"), ("heldout before".into(), "µm".into()));
-        assert_eq!(spoken("bending_urad_per_nm"), ("bending".into(), "µrad/(N·m)".into()));
-        assert_eq!(spoken("factor"), ("factor".into(), String::new()));
+        assert_eq!(name_and_unit("heldout_before_um"), ("heldout before".into(), "µm".into()));
+        assert_eq!(name_and_unit("bending_urad_per_nm"), ("bending".into(), "µrad/(N·m)".into()));
+        assert_eq!(name_and_unit("factor"), ("factor".into(), String::new()));
     }
 
     #[test]

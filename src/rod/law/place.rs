@@ -50,7 +50,7 @@ impl RodLawPlace {
     }
 
     /// In sentences: `the root`, `sleeve-a`.
-    pub fn spoken(&self) -> String {
+    pub fn description(&self) -> String {
         match self {
             RodLawPlace::Rod | RodLawPlace::Clamp | RodLawPlace::Root | RodLawPlace::Slide => {
                 format!("the {self}")

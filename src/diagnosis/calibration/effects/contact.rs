@@ -91,7 +91,7 @@ fn contact_observed(finding: &Finding, _: &CalibrationModel) -> String {
         Location::AllClamps => "In all clamps".to_owned(),
         clamp => format!("At {clamp}"),
     };
-    format!("{at} the contact force differs by {} from the stated one", size(finding, 1.0).say("N"))
+    format!("{at} the contact force differs by {} from the stated one", size(finding, 1.0).with_unit("N"))
 }
 
 /// A device whose springs push harder the farther they are pressed.
@@ -146,6 +146,6 @@ pub(in crate::diagnosis::calibration) fn is_of_clamps(context: &Context) -> bool
 
 fn spring_observed(finding: &Finding, _: &CalibrationModel) -> String {
     let rate = first(finding);
-    let (size, way) = (rate.size().say("N per mm"), if rate.value < 0.0 { "against" } else { "along" });
+    let (size, way) = (rate.size().with_unit("N per mm"), if rate.value < 0.0 { "against" } else { "along" });
     format!("The contact force of {} changes by {size} of displacement, {way} it", finding.location)
 }

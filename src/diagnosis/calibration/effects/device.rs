@@ -162,7 +162,7 @@ fn scale_observed(finding: &Finding, _: &CalibrationModel) -> String {
     else {
         return format!("The displacement sensors of {place} read wrongly");
     };
-    let (by, shown, along) = (percent.size().say("%"), Axis::ALL[shown], Axis::ALL[along]);
+    let (by, shown, along) = (percent.size().with_unit("%"), Axis::ALL[shown], Axis::ALL[along]);
     let largest = match (shown == along, percent.value < 0.0) {
         (true, true) => format!("by {by} too little along {shown}"),
         (true, false) => format!("by {by} too much along {shown}"),

@@ -54,7 +54,7 @@ fn scales(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
 fn scale_observed(finding: &Finding, _: &CalibrationModel) -> String {
     let excess = first(finding).map(|factor| 1e6 * (factor - 1.0));
     let word = if excess.value >= 0.0 { "more" } else { "less" };
-    let (named, excess) = (capital(&finding.location), excess.size().say(""));
+    let (named, excess) = (capital(&finding.location), excess.size().with_unit(""));
     format!("{named} turns {excess} µrad per radian {word} than its encoder shows")
 }
 
@@ -106,7 +106,7 @@ fn couplings(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
 }
 
 fn coupling_observed(finding: &Finding, _: &CalibrationModel) -> String {
-    let share = first(finding).map(|share| 1e6 * share).say("µrad");
+    let share = first(finding).map(|share| 1e6 * share).with_unit("µrad");
     match finding.location {
         Location::Coupling { from, to } => {
             let (from, to) = (from + 1, to + 1);

@@ -69,7 +69,7 @@ fn far_out(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
 fn misread(finding: &Finding, _: &CalibrationModel) -> String {
     let one = |(k, part): (usize, &FindingPart)| {
         let pose = if k == 0 { capital(&part.location) } else { part.location.to_string() };
-        format!("{pose} is off by {}", vector::size(part, UM).say("µm"))
+        format!("{pose} is off by {}", vector::size(part, UM).with_unit("µm"))
     };
     let reported: Vec<String> = finding.parts.iter().take(REPORTED).enumerate().map(one).collect();
     let more = match finding.parts.len().saturating_sub(REPORTED) {
@@ -100,9 +100,13 @@ pub static JOINT_SHIFT: CalibrationEffect = CalibrationEffect {
     estimates: own_parameters,
     observed: |finding, _| match &finding.location {
         Location::JointAfter { joint, after, .. } => {
-            format!("The zero of joint {} moved by {} after {after}", joint + 1, first(finding).say("µrad"))
+            format!(
+                "The zero of joint {} moved by {} after {after}",
+                joint + 1,
+                first(finding).with_unit("µrad")
+            )
         }
-        other => format!("The zero of a joint moved by {}, {other}", first(finding).say("µrad")),
+        other => format!("The zero of a joint moved by {}, {other}", first(finding).with_unit("µrad")),
     },
     write: into_the_angles,
     transfer: Transfer::Made(stays_slipped),

@@ -48,7 +48,7 @@ pub static CLAMP_POSE: CalibrationEffect = CalibrationEffect {
     candidates: clamps,
     estimates: own_parameters,
     observed: |finding, _| {
-        let by = size(finding, UM).say("µm");
+        let by = size(finding, UM).with_unit("µm");
         format!("{} is {by} away from its position in the campaign", capital(&finding.location))
     },
     write: out_of_the_points,
@@ -151,7 +151,7 @@ fn another_socket(finding: &Finding, model: &CalibrationModel, extended: &mut Ca
 }
 
 fn moved_observed(finding: &Finding) -> String {
-    let by = size(finding, UM).say("µm");
+    let by = size(finding, UM).with_unit("µm");
     match &finding.location {
         Location::Shift { what: Some(what), after, .. } => {
             format!("{} moved by {by} after {after}", capital(what))

@@ -204,10 +204,12 @@ fn observed(finding: &Finding, model: &CalibrationModel) -> String {
     let named = capital(&finding.location);
     let up_to = if let Law::Gear(Gear::Curve { .. }) = law(finding, model) { "up to about" } else { "up to" };
     let wave = |k: usize| {
-        let (frequency, amplitude) = (nth(finding, 2 * k), nth(finding, 2 * k + 1).say("µrad"));
+        let (frequency, amplitude) = (nth(finding, 2 * k), nth(finding, 2 * k + 1).with_unit("µrad"));
         let is_rough = frequency.high - frequency.value > ROUGH * frequency.value;
         let cycles = match law(finding, model) {
-            Law::Gear(Gear::Wave { .. }) if is_rough => format!("{} times per revolution", frequency.say("")),
+            Law::Gear(Gear::Wave { .. }) if is_rough => {
+                format!("{} times per revolution", frequency.with_unit(""))
+            }
             _ => cycles(frequency.value),
         };
         match law(finding, model) {

@@ -147,7 +147,7 @@ fn compliance_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Moved(_) => {
             let by = first(finding);
             let word = if by.value >= 0.0 { "more" } else { "less" };
-            format!("{named} gives way by {} {word} than modelled", by.size().say("µrad/(N·m)"))
+            format!("{named} gives way by {} {word} than modelled", by.size().with_unit("µrad/(N·m)"))
         }
     }
 }
@@ -234,7 +234,11 @@ fn nonlinear_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Warms(..)
         | Law::Moved(_) => ("µrad/(N·m)²", "the square of"),
     };
-    format!("{} gives way with {power} its load, by {}", capital(&finding.location), first(finding).say(unit))
+    format!(
+        "{} gives way with {power} its load, by {}",
+        capital(&finding.location),
+        first(finding).with_unit(unit)
+    )
 }
 
 fn write_nonlinear(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
@@ -270,7 +274,8 @@ pub static LINK_FLEXIBILITY: CalibrationEffect = CalibrationEffect {
         let known = |joint: usize| bending_in_file(&model.campaign.robot.effects, joint);
         let known = finding.location.joint().map_or(0.0, known);
         let (place, by, unit) = (&finding.location, first(finding), "µrad/(N·m)");
-        let plain = || format!("The link before {place} bends by {} under the moment there", by.say(unit));
+        let plain =
+            || format!("The link before {place} bends by {} under the moment there", by.with_unit(unit));
         on_top(&format!("The bending of the link before {place}"), by, unit, known).unwrap_or_else(plain)
     },
     write: write_link,
@@ -331,7 +336,7 @@ pub static GRAVITY_TILT: CalibrationEffect = CalibrationEffect {
     observed: |finding, model| {
         let known = tilt_in_file(&model.campaign.robot.effects);
         let (by, unit) = (first(finding), "µrad/(N·m)");
-        let plain = || format!("The base tilts by {} under the arm's moment", by.say(unit));
+        let plain = || format!("The base tilts by {} under the arm's moment", by.with_unit(unit));
         on_top("The tilt of the base under the arm's moment", by, unit, known).unwrap_or_else(plain)
     },
     write: write_tilt,

@@ -118,7 +118,7 @@ fn rod_observed(finding: &Finding, model: &CalibrationModel) -> String {
 /// `12 ± 2 g more`.
 fn heavier(finding: &Finding, unit: &str) -> String {
     let mass = first(finding);
-    format!("{} {}", mass.size().say(unit), if mass.value < 0.0 { "less" } else { "more" })
+    format!("{} {}", mass.size().with_unit(unit), if mass.value < 0.0 { "less" } else { "more" })
 }
 
 /// Displacement of the tip by one more force on it, m: the rod bends and the joints give way.
@@ -232,7 +232,7 @@ pub static GRAVITY_DIRECTION: CalibrationEffect = CalibrationEffect {
     candidates: levels,
     estimates: own_parameters,
     observed: |finding, _| {
-        let angle = size(finding, DEG).say("°");
+        let angle = size(finding, DEG).with_unit("°");
         format!("Gravity is inclined by {angle} to where the base says it acts")
     },
     write: out_of_the_points,

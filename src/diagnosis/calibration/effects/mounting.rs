@@ -46,7 +46,7 @@ pub static BASE_SHIFT: CalibrationEffect = CalibrationEffect {
     candidates: bases,
     estimates: own_parameters,
     observed: |finding, _| {
-        let by = size(finding, UM).say("µm");
+        let by = size(finding, UM).with_unit("µm");
         format!("The robot moved on its base by {by} {}", finding.location)
     },
     write: out_of_the_points,
@@ -156,9 +156,9 @@ fn slipped(model: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
 }
 
 fn slip_observed(finding: &Finding, _: &CalibrationModel) -> String {
-    let by = size(finding, UM).say("µm");
+    let by = size(finding, UM).with_unit("µm");
     let as_turn = match finding.estimates.get(3) {
-        Some(turn) => format!(", as by a rotation of {} in its mount", turn.quantity().say("°")),
+        Some(turn) => format!(", as by a rotation of {} in its mount", turn.quantity().with_unit("°")),
         None => String::new(),
     };
     match &finding.location {

@@ -92,7 +92,8 @@ fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
     let known = |joint: usize| play_in_file(&model.campaign.robot.effects, joint, taken_up);
     let known = finding.location.joint().map_or(0.0, known);
     let what = format!("The play of {}, {by},", finding.location.place());
-    let plain = || format!("{} has {} of play, {by}", capital(&finding.location), first(finding).say("µrad"));
+    let plain =
+        || format!("{} has {} of play, {by}", capital(&finding.location), first(finding).with_unit("µrad"));
     on_top(&what, first(finding), "µrad", known).unwrap_or_else(plain)
 }
 
@@ -172,7 +173,7 @@ fn friction_observed(finding: &Finding, model: &CalibrationModel) -> String {
     let known = finding.location.joint().map_or(0.0, known);
     let (place, per, unit) = (&finding.location, first(finding), "µrad/(N·m)");
     let plain = || {
-        let (joint, per) = (capital(place), per.say(unit));
+        let (joint, per) = (capital(place), per.with_unit(unit));
         format!("{joint} stops by {per} of its load apart when it comes from either side")
     };
     on_top(&format!("The friction of {place}"), per, unit, known).unwrap_or_else(plain)

@@ -84,7 +84,7 @@ fn lag_observed(finding: &Finding, _: &CalibrationModel) -> String {
     };
     format!(
         "When the angles were read, {} of the last move of {whose} was still to come",
-        first(finding).map(|share| 100.0 * share).say("%")
+        first(finding).map(|share| 100.0 * share).with_unit("%")
     )
 }
 
@@ -240,18 +240,18 @@ fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
     match law(finding, model) {
         Law::Drift(course, frame) => {
             let (_, unit) = course.unit();
-            format!("The {} drifts by {} with {course}", frame.part(), size.say(unit))
+            format!("The {} drifts by {} with {course}", frame.part(), size.with_unit(unit))
         }
         Law::Warms(course, Warmed::Zero) => {
-            let by = first(finding).say(course.angle_unit().1);
+            let by = first(finding).with_unit(course.angle_unit().1);
             format!("The zero of {} drifts by {by} with {course}", finding.location)
         }
         Law::Warms(course, Warmed::Length) => {
-            let by = first(finding).say(course.unit().1);
+            let by = first(finding).with_unit(course.unit().1);
             format!("The link of {} grows by {by} with {course}", finding.location)
         }
         Law::Warms(course, Warmed::Arm) => {
-            let by = first(finding).say(course.share_unit().1);
+            let by = first(finding).with_unit(course.share_unit().1);
             format!("The arm grows by {by} with {course}, all its links alike")
         }
         Law::Only
@@ -261,7 +261,7 @@ fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::MassesUnknown(_)
         | Law::Rod(_)
         | Law::Moved(_) => {
-            format!("Drift by {} at {}", size.say("µm"), finding.location)
+            format!("Drift by {} at {}", size.with_unit("µm"), finding.location)
         }
     }
 }

@@ -62,7 +62,7 @@ pub static SENSOR_LAG: RigEffect = RigEffect {
         };
         match of_action(finding, model, is_late) {
             Some(share) => {
-                let share = share.map(|share| 100.0 * share).say("%");
+                let share = share.map(|share| 100.0 * share).with_unit("%");
                 format!("{display} lags: {share} of each change of the load is not shown yet when it is read")
             }
             None => {

@@ -175,5 +175,5 @@ pub(super) fn number(finding: &Finding, name: &str) -> Quantity {
 
 /// The size of one, as people write it.
 pub(super) fn size(finding: &Finding, name: &str, unit: &str) -> String {
-    number(finding, name).size().say(unit)
+    number(finding, name).size().with_unit(unit)
 }

@@ -56,9 +56,13 @@ pub static SLIP: RigEffect = RigEffect {
             .filter_map(|(part, shift)| Some((shifted_channel(&part.location)?, shift.quantity())))
             .collect();
         others.sort_by_key(|(channel, _)| *channel);
-        let one = |(channel, shift): &(Axis, Quantity)| format!(", d{channel} by {}", shift.say("µm"));
+        let one = |(channel, shift): &(Axis, Quantity)| format!(", d{channel} by {}", shift.with_unit("µm"));
         let besides: String = others.iter().map(one).collect();
-        format!("The readings jump by {} ({}){besides}", number(finding, "um").say("µm"), finding.location)
+        format!(
+            "The readings jump by {} ({}){besides}",
+            number(finding, "um").with_unit("µm"),
+            finding.location
+        )
     },
     write: out_of_the_readings,
 };

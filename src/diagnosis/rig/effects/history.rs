@@ -83,7 +83,7 @@ pub static CREEP: RigEffect = RigEffect {
             Some(History::Creep(clock, _)) => clock.name(),
             _ => "under load",
         };
-        let growth = number(finding, "per_decade").map(|share| 100.0 * share).say("%");
+        let growth = number(finding, "per_decade").map(|share| 100.0 * share).with_unit("%");
         match model.data().iter().any(|d| d.imposed.is_some()) {
             true => {
                 format!("Under a held displacement the load falls by {growth} per decade of time {since}")
@@ -124,7 +124,7 @@ pub static THERMAL_SOFTENING: RigEffect = RigEffect {
     },
     missing: |_| "no temperatures were recorded (column `temperature_c`), or they do not differ",
     observed: |finding, _| {
-        let growth = number(finding, "per_k").map(|share| 100.0 * share).say("%");
+        let growth = number(finding, "per_k").map(|share| 100.0 * share).with_unit("%");
         format!("The deflections grow by {growth} per kelvin")
     },
     write: nowhere,
@@ -154,7 +154,7 @@ pub static HYSTERESIS: RigEffect = RigEffect {
     observed: |finding, model| {
         let is_open = matches!(history(finding, model), Some(History::Loop(Loop::Remanent)));
         let at = if is_open { "zero load" } else { "half load" };
-        let share = number(finding, "fraction").map(|share| 100.0 * share).say("%");
+        let share = number(finding, "fraction").map(|share| 100.0 * share).with_unit("%");
         format!("The unloading curve lies above the loading curve, by {share} of full scale at {at}")
     },
     write: nowhere,

@@ -78,10 +78,12 @@ pub static FRICTION: RigEffect = RigEffect {
         let (load, force) = (each_load(finding), size(finding, "force_n", "N"));
         if model.data().iter().any(|d| d.imposed.is_some()) {
             let over = of_action(finding, model, |action| matches!(action, Action::Presliding))
-                .map_or_else(String::new, |travel| format!(" over {} of travel", travel.size().say("µm")));
+                .map_or_else(String::new, |travel| {
+                    format!(" over {} of travel", travel.size().with_unit("µm"))
+                });
             let play = of_action(finding, model, |action| matches!(action, Action::SliderPlay));
             let play = play.map_or_else(String::new, |play| {
-                format!(", behind a play of {} on either side", play.size().say("µm"))
+                format!(", behind a play of {} on either side", play.size().with_unit("µm"))
             });
             return format!("Friction of {force} resists the motion and turns round with it{over}{play}");
         }
@@ -127,7 +129,7 @@ pub static LOAD_OFFSET: RigEffect = RigEffect {
     missing: |_| "no load was applied",
     observed: |finding, model| {
         if model.data().iter().any(|d| d.imposed.is_some()) {
-            let error = number(finding, "force_n").map(|force| -force).say("N");
+            let error = number(finding, "force_n").map(|force| -force).with_unit("N");
             return format!("The load cell shows {error} too much{}", under(&finding.location));
         }
         let word = if number(finding, "force_n").value >= 0.0 { "larger" } else { "smaller" };
@@ -203,10 +205,10 @@ pub static LOAD_MISALIGNMENT: RigEffect = RigEffect {
         match &finding.location {
             Location::LoadTurn { from, towards } => {
                 let word = if angle.value >= 0.0 { "towards" } else { "away from" };
-                format!("Loads along {from} point {} {word} {towards}", angle.size().say("°"))
+                format!("Loads along {from} point {} {word} {towards}", angle.size().with_unit("°"))
             }
             Location::LoadFrame { axes: [a, b], about } => {
-                format!("Loads along {a} and {b} are rotated about {about} by {}", angle.say("°"))
+                format!("Loads along {a} and {b} are rotated about {about} by {}", angle.with_unit("°"))
             }
             _ => format!("All load directions are rotated together by {}", whole_turn(finding)),
         }
@@ -327,7 +329,7 @@ pub(super) fn whole_turn(finding: &Finding) -> String {
         .map(|part| part * part)
         .sum::<f64>()
         .sqrt();
-    crate::inference::Quantity { value, low: value - half, high: value + half }.say("°")
+    crate::inference::Quantity { value, low: value - half, high: value + half }.with_unit("°")
 }
 
 /// `each load`, or `each load along y` where it is those of one axis only.

@@ -140,7 +140,7 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
             Location::SensorTurn { from, towards } => (format!("d{from}"), format!("d{towards}")),
             other => (other.to_string(), "the others".into()),
         };
-        format!("Sensor {from} is rotated by {} {word} {towards}", angle.size().say("°"))
+        format!("Sensor {from} is rotated by {} {word} {towards}", angle.size().with_unit("°"))
     },
     write: out_of_the_readings,
 };
@@ -190,7 +190,7 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
         let is_of_one = matches!(finding.location, Location::Channel { .. });
         let each = by_action(finding, model).into_iter().filter_map(|(action, _, drift)| {
             let Action::Drift(channel, per, _) = action else { return None };
-            let drift = drift.say(per.unit_name());
+            let drift = drift.with_unit(per.unit_name());
             Some(if is_of_one { drift } else { format!("d{channel} {drift}") })
         });
         let drift = each.collect::<Vec<_>>().join(", ");

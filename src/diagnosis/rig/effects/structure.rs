@@ -357,7 +357,7 @@ fn amount(finding: &Finding, model: &RigModel) -> String {
             true => format!(" instead of {}", significant(of_file, 3)),
             false => String::new(),
         };
-        let one = format!("{} {how}{instead}", compliance.say("µrad/(N·m)"));
+        let one = format!("{} {how}{instead}", compliance.with_unit("µrad/(N·m)"));
         if compliance.low > of_file || compliance.high < of_file {
             sure.push(one.clone());
         }

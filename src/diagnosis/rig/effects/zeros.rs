@@ -26,7 +26,7 @@ pub static ZERO_NOT_TAKEN: RigEffect = RigEffect {
     candidates: offsets,
     missing: |_| "nothing was read",
     observed: |finding, _| {
-        let zero = number(finding, "um").say("µm");
+        let zero = number(finding, "um").with_unit("µm");
         format!("A zero was not taken ({}): subtract {zero} from these readings", finding.location)
     },
     write: out_of_the_readings,

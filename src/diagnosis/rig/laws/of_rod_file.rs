@@ -49,7 +49,7 @@ pub fn take_out(model: &mut RigModel, evidence: &mut Evidence, rod: &Rod) -> Vec
                 let unit = if own.unit.is_empty() { String::new() } else { format!(", {}", own.unit) };
                 model.known_numbers.push(KnownNumber::LawConstant(number, k));
                 evidence.nominal_numbers.push(NominalParameter {
-                    name: format!("{} of the law at {}{unit}", own.name, law.place.spoken()),
+                    name: format!("{} of the law at {}{unit}", own.name, law.place.description()),
                     unit: "",
                     si: 1.0,
                     value: own.value,

@@ -238,7 +238,7 @@ fn part(location: Key, zero: f64, error: f64, data: Vec<usize>) -> Part {
         effect: &OFFSET_MISTAKE,
         observed: format!(
             "A zero was not taken ({location}): subtract {} from these readings",
-            zero_um.say("µm")
+            zero_um.with_unit("µm")
         ),
         looks_like: format!("{location}: a zero looks not taken"),
         location,

@@ -115,7 +115,7 @@ pub(super) fn stuck(data: &[Datum], lines: &[Line], expected: Option<&Expected>)
             estimates: vec![Estimate::new("um", value, low, high)],
             observed: format!(
                 "{name} shows {} whatever the load: leave the column out, and look at its sensor",
-                Quantity { value: value / UM, low: low / UM, high: high / UM }.say("µm")
+                Quantity { value: value / UM, low: low / UM, high: high / UM }.with_unit("µm")
             ),
             looks_like: format!("{name} looks stuck"),
             explains: deflections[own[0]],

@@ -73,7 +73,7 @@ impl ForwardModel for RigModel {
             return Description { observed: own.observed(finding), cause: finding.effect.cause.to_owned() };
         }
         let observed = registry::record(finding.effect).map_or_else(
-            || format!("{} at {}", finding.effect.spoken(), finding.location),
+            || format!("{} at {}", finding.effect.title(), finding.location),
             |effect| (effect.observed)(finding, self),
         );
         // the correction of a mistake says what it is

@@ -33,9 +33,9 @@ impl WrittenItem {
     }
 
     /// In sentences: `stiffness scale, rod`.
-    pub fn spoken(&self) -> String {
+    pub fn description(&self) -> String {
         match self {
-            WrittenItem::Effect(effect, location) => format!("{}, {location}", effect.spoken()),
+            WrittenItem::Effect(effect, location) => format!("{}, {location}", effect.title()),
             WrittenItem::Number(_) | WrittenItem::Law(_) | WrittenItem::LawOfRecording { .. } => {
                 self.to_string()
             }

@@ -44,7 +44,7 @@ pub fn section(correction: &Correction) -> Section {
     ];
     let points: Vec<String> = lists
         .into_iter()
-        .flat_map(|(what, items)| items.iter().map(move |item| format!("{what}: {}", item.spoken())))
+        .flat_map(|(what, items)| items.iter().map(move |item| format!("{what}: {}", item.description())))
         .collect();
     if !points.is_empty() {
         blocks.push(Block::List(points));

@@ -72,6 +72,27 @@ impl Compensation {
         Compensation { contact_force: self.contact_force * factor, ..self.clone() }
     }
 
+    /// The same with so much more at `tip` (in {T}, m), kg; less where it is negative.
+    ///
+    /// ```text
+    /// C^g + m·g·C^F
+    /// ```
+    pub(crate) fn with_tip_heavier_by(&self, mass: f64, tip: &Vector3<f64>) -> Self {
+        let more = |compliance: &Compliance| Compliance {
+            gravity: compliance.gravity + compliance.force * (mass * STANDARD_GRAVITY),
+            ..*compliance
+        };
+        let with = |body: Body| {
+            let all = body.mass + mass;
+            Body { mass: all, centre: (body.centre * body.mass + tip * mass) / all }
+        };
+        Compensation {
+            compliance: self.compliance.as_ref().map(more),
+            payload: self.payload.map(with).filter(|body| body.mass > 0.0),
+            ..self.clone()
+        }
+    }
+
     /// Of a campaign in a mode.
     ///
     /// ```

@@ -13,7 +13,9 @@
 //! says how far off a row is. The stretch of rows in which another owner takes off the most is
 //! found in one pass; lines and stretch in turn. Friction keeps readings off by as much on the way
 //! up as on the way down, and zeros differ: without displaced rows each way of each run may have
-//! its own.
+//! its own, and the rod may hang on a slide, which follows the load only once that has changed by
+//! twice the friction. Friction of one step of the loads looks like readings one row too low but
+//! for the rows after a reversal.
 
 use std::collections::BTreeMap;
 
@@ -43,6 +45,9 @@ const CURED: f64 = 0.5;
 /// Another displacement that leaves no more than so many times as much explains alike.
 const NO_WORSE: f64 = 1.1;
 const ROUNDS: usize = 3;
+/// Friction up to half of the largest load is tried, in steps of a fortieth.
+const FRICTION_STEPS: usize = 20;
+const FRICTION_STEP: f64 = 1.0 / 40.0;
 
 /// What stands elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,6 +95,7 @@ pub(super) fn found(rows: &[Reading], load: LoadColumn) -> Option<Displaced> {
         Some(best) if one.left * NO_WORSE > best.left => Some(best),
         _ => Some(one),
     })?;
+    let left = (1..=FRICTION_STEPS).map(|k| sheet.left_by_friction(k, &own)).fold(left, f64::min);
     // the rows that it could start and end at are choices too
     let odds = rows.len() as f64 * (left / best.left.max(f64::MIN_POSITIVE)).sqrt().ln();
     if best.left.sqrt() > CURED * left.sqrt() || odds < ODDS + 2.0 * (rows.len() as f64).ln() {
@@ -153,6 +159,7 @@ struct Tried {
 type Lines = Vec<Option<Fit>>;
 
 /// The rows of a file in their order.
+#[derive(Clone)]
 struct Sheet<'a> {
     rows: &'a [Reading],
     /// For each row the number of its axis and stations.
@@ -163,6 +170,10 @@ struct Sheet<'a> {
     deflection: Vec<f64>,
     /// For each row the one whose load it would have, were the ways down the other way round.
     turned: Vec<usize>,
+    /// The load of each row along the positive axis, N.
+    load: Vec<f64>,
+    /// For each row the number of its run, ways together.
+    run: Vec<usize>,
 }
 
 impl<'a> Sheet<'a> {
@@ -187,7 +198,24 @@ impl<'a> Sheet<'a> {
         }
         let most = deflection.iter().copied().fold(0.0, f64::max);
         deflection.iter_mut().for_each(|own| *own = own.max(most / 3.0));
-        Sheet { rows, label, way, deflection, turned }
+        let load: Vec<f64> = rows.iter().map(|row| f64::from(row.direction.sign) * row.load).collect();
+        let run = numbered(rows.iter().zip(&label).map(|(row, label)| (&row.session, &row.trial, label)));
+        Sheet { rows, label, way, deflection, turned, load, run }
+    }
+
+    /// The same rows on a slide whose friction is this share of the largest load: the rod sees
+    ///
+    /// ```text
+    /// Pᵢ = min(Fᵢ + μ, max(Fᵢ − μ, Pᵢ₋₁)),   P = 0 before a run
+    /// ```
+    fn rubbing(&self, share: f64) -> Vec<f64> {
+        let friction = share * self.load.iter().fold(0.0, |most: f64, load| most.max(load.abs()));
+        let mut seen = vec![0.0f64; self.run.iter().max().map_or(0, |last| last + 1)];
+        let behind = |(load, &run): (&f64, &usize)| {
+            seen[run] = seen[run].clamp(load - friction, load + friction);
+            seen[run]
+        };
+        self.load.iter().zip(&self.run).map(behind).collect()
     }
 
     fn owner(&self, kind: Kind, i: usize) -> Owner {
@@ -201,7 +229,10 @@ impl<'a> Sheet<'a> {
 
     /// The load of an owner along the positive axis, N.
     fn load(&self, owner: (usize, usize)) -> f64 {
-        f64::from(self.rows[owner.0].direction.sign) * self.rows[owner.1].load
+        match owner.0 == owner.1 {
+            true => self.load[owner.0],
+            false => f64::from(self.rows[owner.0].direction.sign) * self.rows[owner.1].load,
+        }
     }
 
     fn fits(&self, owners: &[Owner]) -> Lines {
@@ -256,6 +287,12 @@ impl<'a> Sheet<'a> {
         let all: Vec<f64> = (0..self.rows.len()).map(q).collect();
         let mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
         (mean, all.iter().filter(|&&q| q > SHOWN * SHOWN).count() >= LEAST)
+    }
+
+    /// The same where the rod hangs on a slide, its friction so many steps.
+    fn left_by_friction(&self, steps: usize, own: &[Owner]) -> f64 {
+        let load = self.rubbing(FRICTION_STEP * steps as f64);
+        Sheet { load, ..self.clone() }.left_where_it_is(own).0
     }
 
     fn tried(&self, kind: Kind, own: &[Owner]) -> Option<Tried> {

@@ -36,4 +36,10 @@ impl<'a> LoadedRobot<'a> {
         let compensation = self.compensation.with_contact_force_times(factor);
         LoadedRobot { compensation, free: self.free.clone(), ..*self }
     }
+
+    /// The same with so much more on the tip, kg: the rod bends under it, and the joints turn.
+    pub fn with_tip_heavier_by(&self, mass: f64, tip: &Vector3<f64>) -> LoadedRobot<'a> {
+        let compensation = self.compensation.with_tip_heavier_by(mass, tip);
+        LoadedRobot { compensation, free: self.free.clone(), ..*self }
+    }
 }

@@ -4,13 +4,15 @@ use nalgebra::Vector3;
 
 use super::super::draft::{DraftChange, Rows};
 use super::super::quick::{Worthwhile, density, fit, t_scale};
-use super::{FittedDraft, MistakeSearch, SearchStep};
+use super::{FittedDraft, MistakeSearch, ODDS, SearchStep};
 use crate::statistics::median;
 
 /// The price of a clamp that is not quite in its place: the same for its three numbers.
 pub(super) const DISPLACED: f64 = -7.5;
 /// The price of a tip that is elsewhere from some row on: three numbers and the row.
 const SLIPPED: f64 = -12.0;
+/// A mass at the tip that nobody stated, kg: how large it may be, and how finely it is sought.
+const TIP: (f64, f64) = (1.0, 1e-3);
 /// The price of a contact force of another size, and the sizes that are tried beside one that a
 /// unit says.
 const FORCE: (f64, [f64; 2]) = (-3.0, [0.5, 2.0]);
@@ -21,7 +23,12 @@ impl MistakeSearch<'_> {
     /// slipped where some rows are changed, another contact force.
     pub fn of_effects(&self, changed: &FittedDraft, from: &FittedDraft, tried: &[FittedDraft]) -> f64 {
         let small = tried.iter().filter(|state| !self.is_far(state)).map(|state| state.score);
-        let others = [self.slipped(changed, from), self.another_force(changed, from)];
+        let others = [
+            self.slipped(changed, from),
+            self.another_force(changed, from),
+            // that explains alike, not less: the heavier tip has a number of its own to choose
+            self.heavier_tip(changed, from).map(|score| score - ODDS),
+        ];
         let displaced = self.displaced(changed, from).into_iter();
         let displaced = displaced.chain(self.moved_fixtures(changed, from));
         small.chain(displaced).chain(others.into_iter().flatten()).fold(f64::NEG_INFINITY, f64::max)
@@ -93,4 +100,32 @@ impl MistakeSearch<'_> {
         });
         scores.max_by(f64::total_cmp)
     }
+
+    /// Another mass at the tip than the stated one, where the contact force is changed: clamps that
+    /// all stand on the same edge feel both along the vertical. It is as rare as the mistake.
+    fn heavier_tip(&self, changed: &FittedDraft, from: &FittedDraft) -> Option<f64> {
+        let Some(step @ SearchStep::Move(number)) = changed.steps.last() else { return None };
+        self.moves[*number].force?;
+        let with = |mass: f64| {
+            let body = self.bodies[from.thin.body].with_tip_heavier_by(mass, &from.fit.tool);
+            let fit = fit(&from.thin, &body, Worthwhile::ANY)?;
+            Some(self.scored(from.steps.clone(), from.thin.clone(), fit).score)
+        };
+        let best = largest(|mass| with(mass).unwrap_or(f64::NEG_INFINITY), -TIP.0, TIP.0, TIP.1);
+        Some(with(best)? + FORCE.0 + self.log_prior(std::slice::from_ref(step)))
+    }
+}
+
+/// Where a function with one peak is largest, by halving the steps about the best of a grid.
+fn largest(f: impl Fn(f64) -> f64, low: f64, high: f64, within: f64) -> f64 {
+    const GRID: usize = 8;
+    let mut step = (high - low) / GRID as f64;
+    let grid = (0..=GRID).map(|k| low + k as f64 * step).map(|x| (x, f(x)));
+    let better = |a: (f64, f64), b: (f64, f64)| if b.1 > a.1 { b } else { a };
+    let mut best = grid.fold((low, f64::NEG_INFINITY), better);
+    while step > within {
+        step /= 2.0;
+        best = [best.0 - step, best.0 + step].into_iter().map(|x| (x, f(x))).fold(best, better);
+    }
+    best.0
 }

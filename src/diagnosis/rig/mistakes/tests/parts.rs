@@ -133,6 +133,29 @@ fn friction_of_a_step_of_the_loads_displaces_nothing() {
     });
 }
 
+/// The same where the slide, after a reversal, first holds the rod where it is: no zero of a way
+/// stands for that.
+#[test]
+fn friction_that_holds_the_rod_after_a_reversal_displaces_nothing() {
+    recordings(&[Bench::Full], 1, |what, file, clean| {
+        for friction in [3.0, 5.0, 6.0] {
+            let mut rubbing = clean.clone();
+            let (mut run, mut seen) = (String::new(), 0.0);
+            for row in &mut rubbing.rows {
+                let own = format!("{} {:?}", row.trial, row.direction);
+                if own != run {
+                    (run, seen) = (own, 0.0);
+                }
+                seen = f64::clamp(seen, row.load - friction, row.load + friction);
+                let share = seen / row.load;
+                row.offset.iter_mut().flatten().for_each(|y| *y *= share);
+            }
+            let named = found(&rubbing, Some(file));
+            assert!(named.iter().all(|name| !name.contains("row_mistake")), "{what} {friction}: {named:?}");
+        }
+    });
+}
+
 #[test]
 fn a_load_that_was_typed_wrongly_is_corrected() {
     let file = rod(ROD_5);

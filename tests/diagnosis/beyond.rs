@@ -98,6 +98,32 @@ fn a_rod_that_gives_way_less_the_faster_it_is_loaded() {
     assert_eq!(law["expression"]["text"], "Δu/u = a·sgn(v)·ln(1 + |v|/v_0)");
 }
 
+/// Loads along x, y and z one after another: what fades meanwhile shows less of the last ones, as a
+/// sensor that is turned would.
+#[test]
+fn a_display_that_fades_is_no_turned_sensor() {
+    let rod = include_str!("../../rods/4.toml");
+    let known = Rod::from_toml("4.toml", rod).unwrap();
+    let compliance = answer::compliance(known, &ComplianceOptions::default()).unwrap().json;
+    let entry = |channel: usize, axis: usize| compliance["cf_um_per_n"][channel][axis].as_f64().unwrap();
+    let mut random = Random::seeded(3, 6);
+    let mut text = "trial,axis,load_n,time_s,dx_um,dy_um,dz_um\n".to_owned();
+    let loads: Vec<f64> = (1..=7).chain((1..7).rev()).map(|k| 1.4 * f64::from(k)).collect();
+    let rows = 3 * 5 * loads.len();
+    for k in 0..rows {
+        let (axis, trial) = (k / (5 * loads.len()), k / loads.len() % 5 + 1);
+        let (load, share) = (loads[k % loads.len()], k as f64 / rows as f64);
+        let gain = [1.0 - 0.5 * share * share, 1.0, 1.0];
+        let read = [0, 1, 2].map(|channel| gain[channel] * entry(channel, axis) * load + random.normal());
+        let (time, [x, y, z]) = (120 * k, read);
+        text += &format!("{trial},{},{load},{time},{x:.2},{y:.2},{z:.2}\n", ["x", "y", "z"][axis]);
+    }
+    let answer = Answer::of(Some(rod), &text);
+    let headline = answer.json["headline"].as_str().unwrap();
+    assert_eq!(answer.effects(), [""; 0], "{headline}");
+    assert!(headline.contains("gain of dx"), "{headline}");
+}
+
 /// A rod, and its readings under three trials of these loads along z, N. `at`: the time, s, the
 /// load that it carries, N, and a share of what all sensors are off by, of each number and load.
 fn along_z(loads: &[f64], mut at: impl FnMut(usize, f64) -> (f64, f64, f64)) -> (&'static str, String) {

@@ -10,9 +10,9 @@
 //! levels, so that four loads have four columns and any shape can be met: a step at one load, a
 //! contact that stiffens beyond 10 N. A curve adds to the readings of one line or channel (s a
 //! share of what was read there), or it multiplies the deflections of all lines at once (s a share
-//! of them), or, over the load, it adds to what is read along the load on all lines: then physics
-//! that acts on all lines alike, such as relaxation with one time constant or a seat that gives
-//! way, is one rival and not many.
+//! of them), or of one sensor over the time, or, over the load, it adds to what is read along the
+//! load on all lines: then physics that acts on all lines alike, such as relaxation with one time
+//! constant or a seat that gives way, is one rival and not many.
 //!
 //! What the load before leaves behind, the time since its change and the speed of that multiply
 //! deflections ([`before`]). A force against the motion that is not the same throughout has its
@@ -85,6 +85,9 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
             curves.extend(curve(along, place, &coordinate, group, "um", size, |_| 1.0));
             if along.variable == clock && !is_of_line {
                 curves.extend(fine(along, place, &coordinate, group, size));
+                // a display that fades: more the larger its reading
+                let gain = format!("gain of {place}");
+                curves.extend(curve(along, &gain, &coordinate, group, "percent", SHARE, |i| deflections[i]));
             }
         }
         if let Some(cycles) = cycles.as_ref().filter(|_| along.is_recording) {

@@ -142,7 +142,7 @@ fn friction_that_holds_the_rod_after_a_reversal_displaces_nothing() {
             let mut rubbing = clean.clone();
             let (mut run, mut seen) = (String::new(), 0.0);
             for row in &mut rubbing.rows {
-                let own = format!("{} {:?}", row.trial, row.direction);
+                let own = format!("{:?} {}", row.trial, row.direction.axis);
                 if own != run {
                     (run, seen) = (own, 0.0);
                 }

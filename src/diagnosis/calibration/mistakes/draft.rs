@@ -35,6 +35,8 @@ pub(super) struct Draft {
     pub loose: Vec<usize>,
     /// Changes of the angles, in their order: the validation has them too.
     pub joint_changes: Vec<DraftChange>,
+    /// What all positions are multiplied by.
+    pub positions_changed: Matrix3<f64>,
 }
 
 /// What undoes a mistake.
@@ -181,6 +183,7 @@ impl Draft {
             body: 0,
             loose: Vec::new(),
             joint_changes: Vec::new(),
+            positions_changed: Matrix3::identity(),
         }
     }
 
@@ -221,7 +224,10 @@ impl Draft {
                 }
                 self.joint_changes.push(change.clone());
             }
-            DraftChange::Seen(matrix) => self.seen.iter_mut().for_each(|seen| *seen = matrix * *seen),
+            DraftChange::Seen(matrix) => {
+                self.seen.iter_mut().for_each(|seen| *seen = matrix * *seen);
+                self.positions_changed = matrix * self.positions_changed;
+            }
             DraftChange::Rows { by, with_clamps } => self.displace(*by, *with_clamps),
             DraftChange::Groups(a, b) => {
                 for group in &mut self.group {

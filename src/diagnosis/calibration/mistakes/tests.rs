@@ -199,6 +199,29 @@ fn axes_of_the_device() {
     assert!(rivals.iter().any(|place| place == "x_mm and y_mm"), "{rivals:?}");
 }
 
+/// Both files come from the same export. Axes that take turns look like a tracker that stood
+/// elsewhere, but for its place.
+#[test]
+fn a_validation_in_which_positions_are_as_wrong_is_corrected_too() {
+    let right = tracked(60, 7);
+    let seen = tracked(20, 7).measurements;
+    let changes: [fn(Vector3<f64>) -> Vector3<f64>; 3] =
+        [|x| x / 25.4, |x| Vector3::new(x.x, x.y, -x.z), |x| Vector3::new(x.y, x.z, x.x)];
+    for change in changes {
+        let as_wrong = with_positions(&tracked(20, 7), change).measurements;
+        for validation in [&as_wrong, &seen] {
+            let mut wrong = with_positions(&right, change);
+            wrong.validation = Some(validation.clone());
+            let meant = mended(&wrong).campaign.validation.unwrap();
+            let off = |(a, b): (&Vector3<f64>, &Vector3<f64>)| (a - b).norm();
+            let (Targets::Points(meant), Targets::Points(seen)) = (&meant.targets, &seen.targets) else {
+                panic!("points");
+            };
+            assert!(meant.iter().zip(seen).map(off).fold(0.0, f64::max) < 1e-9, "{:?}", change(Vector3::x()));
+        }
+    }
+}
+
 #[test]
 fn positions_some_rows_away_from_their_angles() {
     for by in [1, -2] {

@@ -1,20 +1,24 @@
 //! The campaign that was meant.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::super::draft::{Draft, DraftChange, change_joints};
 use super::super::moves::Other;
 use super::super::quick;
-use super::super::quick::{LoadedRobot, Worthwhile};
+use super::super::quick::{Fit, LoadedRobot, Worthwhile};
 use super::super::search::{FittedDraft, MistakeSearch, SearchStep};
 use super::super::{Mended, Neighbours};
-use crate::calibration::campaign::{Campaign, Recording};
+use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Compensation, Mode};
 use crate::error::Result;
 use crate::robot::Robot;
 use crate::rod::Rod;
 use crate::spatial::Pose;
+use crate::statistics::median;
 use crate::units::UM;
+
+/// Positions of a validation that a change brings so much nearer to the tips held the mistake too.
+const CURED: f64 = 0.5;
 
 impl Mended {
     /// The campaign that was meant.
@@ -72,6 +76,11 @@ impl Mended {
         self.campaign.measurements.align_stations(&robot, base, tool)?;
         if let Some(validation) = &mut self.campaign.validation {
             turn_joints(validation, &robot, tool, &draft.joint_changes);
+            // what a tracker saw of the one it saw of the other; what a clamp reads it never sees
+            if recorded.measurements.groups.iter().all(|group| group.name.is_tracked()) {
+                let at = best.fit.bases.first().map(|base| (base, &best.fit.tool));
+                change_positions(validation, &robot, tool, at, &draft.positions_changed);
+            }
         }
         Ok(())
     }
@@ -101,13 +110,52 @@ fn turn_joints(validation: &mut Recording, robot: &Robot, tool: Vector3<f64>, ch
     for row in turned.joint_values.chunks_mut(count.max(1)) {
         changes.iter().for_each(|change| change_joints(change, row));
     }
-    let left = |recording: &Recording| {
-        let alone = Campaign::new(robot.clone(), recording.clone()).ok()?.with_tool(tool);
-        let draft = Draft::of(&alone).thinned(100);
-        let body = LoadedRobot::new(robot, Compensation::bare(), tool, &draft);
-        quick::fit(&draft, &body, Worthwhile::ANY).map(|fit| fit.log_likelihood)
-    };
+    let left = |recording| fitted(recording, robot, tool).map(|fit| fit.log_likelihood);
     if left(&turned) > left(validation) {
         *validation = turned;
+    }
+}
+
+/// A recording by itself, with the robot of the file.
+fn fitted(recording: &Recording, robot: &Robot, tool: Vector3<f64>) -> Option<Fit> {
+    let alone = Campaign::new(robot.clone(), recording.clone()).ok()?.with_tool(tool);
+    let draft = Draft::of(&alone).thinned(100);
+    let body = LoadedRobot::new(robot, Compensation::bare(), tool, &draft);
+    quick::fit(&draft, &body, Worthwhile::ANY)
+}
+
+/// The positions of a validation as they are meant, where it holds the mistake too: where they are
+/// far nearer to the tips so, from the place of the tracker (the base and the tip `at` it) or, should
+/// it have stood elsewhere, from any.
+fn change_positions(
+    validation: &mut Recording,
+    robot: &Robot,
+    tool: Vector3<f64>,
+    at: Option<(&Pose, &Vector3<f64>)>,
+    change: &Matrix3<f64>,
+) {
+    if *change == Matrix3::identity() {
+        return;
+    }
+    let mut meant = validation.clone();
+    let Targets::Points(points) = &mut meant.targets else { return };
+    points.iter_mut().for_each(|point| *point = change * *point);
+    let from_there = |recording: &Recording| {
+        let (base, tip) = at?;
+        let Targets::Points(points) = &recording.targets else { return None };
+        let joints = recording.joint_values.chunks(recording.joint_count.max(1));
+        let off =
+            joints.zip(points).map(|(q, point)| (base.point(&robot.flange_at(q).point(tip)) - point).norm());
+        median(&off.collect::<Vec<_>>())
+    };
+    let from_anywhere =
+        |recording: &Recording| fitted(recording, robot, tool).and_then(|fit| median(&fit.residuals));
+    let is_cured = |before: Option<f64>, after: Option<f64>| {
+        before.zip(after).is_some_and(|(before, after)| after < CURED * before)
+    };
+    if is_cured(from_there(validation), from_there(&meant))
+        || is_cured(from_anywhere(validation), from_anywhere(&meant))
+    {
+        *validation = meant;
     }
 }

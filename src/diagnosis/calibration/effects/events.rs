@@ -115,11 +115,12 @@ pub static JOINT_SHIFT: CalibrationEffect = CalibrationEffect {
 
 fn slipped_joints(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
     let places = places_of_all(context);
-    let after = |joint: usize, before: usize| {
-        let row = before - 1;
-        slipped(context, joint, before, Location::JointAfter { joint, row, after: context.pose_name(row) })
+    let Some(&first) = places.iter().min() else { return Vec::new() };
+    let of_joint = |joint: usize| {
+        let at = |row: usize| Location::JointAfter { joint, row, after: context.pose_name(row) };
+        let always = slipped(context, joint, first, at(first - 1));
+        places.iter().map(|&before| always.from_row(before, at(before - 1))).collect::<Vec<_>>()
     };
-    let of_joint = |joint: usize| places.iter().map(move |&before| after(joint, before));
     context.revolute().into_iter().flat_map(of_joint).collect()
 }
 

@@ -58,13 +58,11 @@ fn bases(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
     if context.has_sockets() {
         return Vec::new();
     }
-    let count = context.configurations.len();
-    let after = |before: usize| {
-        let row = before - 1;
-        let location = Location::Shift { what: None, row, after: context.pose_name(row) };
-        base_moved(context, before..count, location)
-    };
-    places_of_all(context).into_iter().map(after).collect()
+    let places = places_of_all(context);
+    let Some(&first) = places.iter().min() else { return Vec::new() };
+    let at = |row: usize| Location::Shift { what: None, row, after: context.pose_name(row) };
+    let always = base_moved(context, first..context.configurations.len(), at(first - 1));
+    places.into_iter().map(|before| always.from_row(before, at(before - 1))).collect()
 }
 
 /// The robot on a base that is displaced at some rows.
@@ -114,13 +112,11 @@ pub static TOOL_SHIFT: CalibrationEffect = CalibrationEffect {
 };
 
 fn tools(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
-    let count = context.configurations.len();
-    let after = |before: usize| {
-        let row = before - 1;
-        let location = Location::Shift { what: Some("tool".into()), row, after: context.pose_name(row) };
-        tool_moved(context, before..count, location)
-    };
-    places_of_all(context).into_iter().map(after).collect()
+    let places = places_of_all(context);
+    let Some(&first) = places.iter().min() else { return Vec::new() };
+    let at = |row: usize| Location::Shift { what: Some("tool".into()), row, after: context.pose_name(row) };
+    let always = tool_moved(context, first..context.configurations.len(), at(first - 1));
+    places.into_iter().map(|before| always.from_row(before, at(before - 1))).collect()
 }
 
 /// The ball elsewhere in {T} at some rows.

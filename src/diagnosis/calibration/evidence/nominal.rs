@@ -37,9 +37,7 @@ pub fn with_numbers(evidence: Evidence, campaign: &Campaign, mode: Mode, context
     }
     let mut columns = DMatrix::zeros(evidence.residual.len(), numbers.len());
     for (k, (number, column)) in numbers.iter().enumerate() {
-        let mut slots = columns.view_mut((column.first, k), (column.values.len(), 1));
-        slots.copy_from_slice(&column.values);
-        slots *= number.standard_uncertainty;
+        column.add_to_slice(columns.column_mut(k).as_mut_slice(), number.standard_uncertainty);
     }
     let left = Whitening::new(&evidence, &evidence.residual).apply_columns(&columns);
     let is_felt = |k: &usize| left.column(*k).norm() > UNFELT * context.noise;

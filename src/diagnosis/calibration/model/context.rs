@@ -156,7 +156,7 @@ impl<'a> Context<'a> {
             let scaled: [f64; 3] = (displacement(row, &self.configurations[row]) * self.scale[row]).into();
             scaled
         };
-        Column { first, values: rows.flat_map(at).collect(), pattern: None }
+        Column::new(first, rows.flat_map(at).collect(), None)
     }
 
     /// A column of a displacement along one of the patterns, by row.
@@ -173,7 +173,7 @@ impl<'a> Context<'a> {
     ) -> Column {
         let at = |row: usize| weight(row, &self.configurations[row]) * self.scale[row];
         let values = (first..self.configurations.len()).map(at).collect();
-        Column { first, values, pattern: Some(pattern.clone()) }
+        Column::new(first, values, Some(pattern.clone()))
     }
 
     /// A turn of a joint by so much at each row, rad per unit of the parameter.

@@ -1,5 +1,7 @@
 //! A candidate with the columns that its parameters make of a recording.
 
+use std::sync::Arc;
+
 use nalgebra::DVector;
 
 use super::law::Law;
@@ -8,11 +10,16 @@ use crate::units::Unit;
 
 /// ∂response/∂parameter: data from `first` on, m per unit of the parameter; zero elsewhere. Of a
 /// pattern, rows from `first` on, and what each of them counts.
+///
+/// Columns of one change from different rows on share their values: of thousands of places where a
+/// base may have moved, only one is held.
 #[derive(Debug, Clone)]
 pub struct Column {
-    pub first: usize,
-    pub values: Vec<f64>,
-    pub pattern: Option<Pattern>,
+    first: usize,
+    all: Arc<[f64]>,
+    /// How many of `all` stand before `first`.
+    skip: usize,
+    pattern: Option<Pattern>,
 }
 
 /// A candidate with how it acts and with what each of its parameters does.
@@ -23,17 +30,38 @@ pub struct Entry {
 }
 
 impl Column {
+    pub fn new(first: usize, values: Vec<f64>, pattern: Option<Pattern>) -> Column {
+        Column { first, all: values.into(), skip: 0, pattern }
+    }
+
+    /// Its values, from its first on.
+    fn values(&self) -> &[f64] {
+        &self.all[self.skip..]
+    }
+
+    /// The same from a row on.
+    fn from_row(&self, row: usize) -> Column {
+        let first = if self.pattern.is_some() { row } else { 3 * row };
+        let skip = (self.skip + first.saturating_sub(self.first)).min(self.all.len());
+        Column { first: first.max(self.first), skip, ..self.clone() }
+    }
+
     /// Adds `value` times the column to a recording.
     pub fn add_to(&self, response: &mut DVector<f64>, value: f64) {
+        self.add_to_slice(response.as_mut_slice(), value);
+    }
+
+    /// The same, its data one after another.
+    pub fn add_to_slice(&self, response: &mut [f64], value: f64) {
         let Some(pattern) = &self.pattern else {
-            let slots = response.as_mut_slice().iter_mut().skip(self.first);
-            slots.zip(&self.values).for_each(|(slot, v)| *slot += value * v);
+            let slots = response.iter_mut().skip(self.first);
+            slots.zip(self.values()).for_each(|(slot, v)| *slot += value * v);
             return;
         };
         let first = pattern.block * self.first;
-        let slots = response.as_mut_slice()[first..].chunks_mut(pattern.block);
+        let slots = response[first..].chunks_mut(pattern.block);
         for ((slots, weight), along) in
-            slots.zip(&self.values).zip(pattern.values[first..].chunks(pattern.block))
+            slots.zip(self.values()).zip(pattern.values[first..].chunks(pattern.block))
         {
             slots.iter_mut().zip(along).for_each(|(slot, along)| *slot += value * (weight * along));
         }
@@ -41,12 +69,12 @@ impl Column {
 
     /// As the engine sees it, for a parameter of such a size.
     pub fn stored(&self, size: f64) -> StoredColumn<'_> {
-        let (first, values) = (self.first, self.values.as_slice().into());
+        let (first, values) = (self.first, self.values().into());
         StoredColumn { factor: size, first, values, pattern: self.pattern.as_ref() }
     }
 
     pub fn is_zero(&self) -> bool {
-        self.values.iter().all(|&v| v == 0.0)
+        self.values().iter().all(|&v| v == 0.0)
     }
 }
 
@@ -63,6 +91,12 @@ impl Entry {
             is_nonparametric: false,
         };
         Entry { candidate, law: Law::Only, columns }
+    }
+
+    /// The same from a row on, told to be at another place.
+    pub fn from_row(&self, row: usize, location: Location) -> Entry {
+        let columns = self.columns.iter().map(|column| column.from_row(row)).collect();
+        Entry { candidate: Candidate { location, ..self.candidate.clone() }, law: self.law.clone(), columns }
     }
 
     /// The same by one of several laws.

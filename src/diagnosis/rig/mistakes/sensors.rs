@@ -10,6 +10,7 @@ use crate::diagnosis::rig::recording::datum::Datum;
 use crate::diagnosis::rig::recording::evidence::resolution;
 use crate::inference::{Estimate, Key, Quantity};
 use crate::spatial::Axis;
+use crate::statistics::median;
 use crate::units::{UM, significant};
 
 /// Readings that are the same differ by no more than this share of the channel's largest.
@@ -39,6 +40,9 @@ const SCALE: f64 = 0.1;
 const BEYOND: f64 = 0.05;
 /// Ln of the chance by which readings at one load may be the same.
 const BY_CHANCE: f64 = -5.0;
+/// And of readings at loads that differ, all over a file; so many are looked at.
+const NEVER: f64 = -20.0;
+const LONG: usize = 8;
 /// So many readings that are the largest to the last digit are cut off, wherever they would lie,
 /// where noise, and what the line goes on by between them, is more than so many steps of the
 /// display: of readings that merely end there about an eighth of one more lies within a step of the
@@ -224,9 +228,11 @@ fn cut_off(beyond: &[f64], scatter: f64, limit: f64, step: f64) -> Option<f64> {
 }
 
 /// Displays that stood still for some rows in which the loads changed.
-pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
+///
+/// Where whole lines are among these rows, so that nothing else says what they would show, the rod
+/// does, if the display trembles elsewhere.
+pub(super) fn frozen(data: &[Datum], all: &[Line], by_rod: Option<&Expected>) -> Vec<Part> {
     let mut found = Vec::new();
-    let all = lines(data, |_| true);
     for channel in Axis::ALL {
         let own: Vec<usize> = (0..data.len()).filter(|&i| data[i].channel == channel).collect();
         let largest = own.iter().fold(0.0, |most: f64, &i| most.max(data[i].measured.abs()));
@@ -236,20 +242,29 @@ pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
                 own[first..].iter().take_while(|&&i| data[i].measured == data[own[first]].measured).count();
             let at = &own[first..first + same];
             first += same;
-            if same < FROZEN
-                || same == own.len()
-                || is_surely_flat(data, &all, at, HARDLY * CHANGES * largest)
+            if same < FROZEN || same == own.len() || is_surely_flat(data, all, at, HARDLY * CHANGES * largest)
             {
                 continue;
             }
-            let Some(expected) = expected(data, at, at) else { continue };
-            let value = data[at[0]].measured;
-            let range = expected
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), (v, _)| (l.min(*v), h.max(*v)));
-            let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
             // what moves by a digit or two of its own display stays the same for long
             let step = step_of(data, &own);
+            let (values, scatter): (Vec<f64>, f64) = match (expected(data, at, at), by_rod) {
+                (Some(expected), _) => {
+                    let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
+                    (expected.iter().map(|(value, _)| *value).collect(), scatter)
+                }
+                (None, Some(rod)) if same >= LONG => {
+                    let Some(tremor) = tremor(data, &own, at).filter(|tremor| is_no_tie(same, step, *tremor))
+                    else {
+                        continue;
+                    };
+                    let Some(values) = by_the_rod(data, all, at, rod) else { continue };
+                    (values, tremor)
+                }
+                _ => continue,
+            };
+            let value = data[at[0]].measured;
+            let range = range(&values);
             let least = (CHANGES * largest).max(TIMES_SCATTER * scatter).max(DIGITS * step);
             if range.1 - range.0 < least {
                 continue;
@@ -271,6 +286,38 @@ pub(super) fn frozen(data: &[Datum]) -> Vec<Part> {
         }
     }
     found
+}
+
+/// What the rod says of some data, where it is right of most lines.
+fn by_the_rod(data: &[Datum], lines: &[Line], at: &[usize], rod: &Expected) -> Option<Vec<f64>> {
+    let says = |&i: &usize| {
+        let k = lines.iter().position(|line| line.holds(&data[i]))?;
+        Some(rod.slopes[k] * data[i].signed_load())
+    };
+    (rod.scale.ln().abs() < RIGHT).then(|| at.iter().map(says).collect()).flatten()
+}
+
+/// How much a channel trembles from one reading to the next about its lines, apart from `at`: the
+/// standard deviation of a reading, m. What goes on for a while does not count.
+fn tremor(data: &[Datum], own: &[usize], at: &[usize]) -> Option<f64> {
+    let without: HashSet<usize> = at.iter().copied().collect();
+    let rest = lines(data, |i| !without.contains(&i));
+    let off = |&i: &usize| {
+        let line = rest.iter().find(|line| line.holds(&data[i]) && line.has_slope && line.data.len() > 2)?;
+        (!without.contains(&i)).then(|| data[i].measured - line.fit.at(data[i].signed_load()))
+    };
+    let off: Vec<Option<f64>> = own.iter().map(off).collect();
+    let steps: Vec<f64> = off.windows(2).filter_map(|pair| Some((pair[1]? - pair[0]?).abs())).collect();
+    // of a difference of two normal numbers of one standard deviation
+    const MEDIAN: f64 = 0.954;
+    median(&steps).map(|step| step / MEDIAN)
+}
+
+/// True where a display that trembles so much hardly shows the same so many times in a row: each
+/// time again by a chance of step/(2·√π·tremor).
+fn is_no_tie(same: usize, step: f64, tremor: f64) -> bool {
+    let again = (step / (2.0 * std::f64::consts::PI.sqrt() * tremor)).ln();
+    step > 0.0 && (same as f64 - 1.0) * again < NEVER
 }
 
 /// The smallest step of the display of the channel of which `own` are the data, m.

@@ -83,7 +83,7 @@ impl Mended {
             let all = lines(&data, |_| true);
             let parts = match kind {
                 0 => sensors::saturated(&data, &all, self.expected(&all)?.as_ref()),
-                1 => sensors::frozen(&data),
+                1 => sensors::frozen(&data, &all, self.expected(&all)?.as_ref()),
                 _ => sensors::stuck(&data, &all, self.expected(&all)?.as_ref()),
             };
             for part in parts {

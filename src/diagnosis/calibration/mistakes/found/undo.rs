@@ -125,8 +125,8 @@ fn fitted(recording: &Recording, robot: &Robot, tool: Vector3<f64>) -> Option<Fi
 }
 
 /// The positions of a validation as they are meant, where it holds the mistake too: where they are
-/// far nearer to the tips so, from the place of the tracker (the base and the tip `at` it) or, should
-/// it have stood elsewhere, from any.
+/// far nearer to the tips so, from the place of the tracker (the base and the tip `at` it) or,
+/// should it have stood elsewhere, from any.
 fn change_positions(
     validation: &mut Recording,
     robot: &Robot,

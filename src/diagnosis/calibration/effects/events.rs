@@ -119,7 +119,7 @@ fn slipped_joints(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
     let of_joint = |joint: usize| {
         let at = |row: usize| Location::JointAfter { joint, row, after: context.pose_name(row) };
         let always = slipped(context, joint, first, at(first - 1));
-        places.iter().map(|&before| always.from_row(before, at(before - 1))).collect::<Vec<_>>()
+        places.iter().map(|&before| always.starting_at(before, at(before - 1))).collect::<Vec<_>>()
     };
     context.revolute().into_iter().flat_map(of_joint).collect()
 }

@@ -62,7 +62,7 @@ fn bases(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
     let Some(&first) = places.iter().min() else { return Vec::new() };
     let at = |row: usize| Location::Shift { what: None, row, after: context.pose_name(row) };
     let always = base_moved(context, first..context.configurations.len(), at(first - 1));
-    places.into_iter().map(|before| always.from_row(before, at(before - 1))).collect()
+    places.into_iter().map(|before| always.starting_at(before, at(before - 1))).collect()
 }
 
 /// The robot on a base that is displaced at some rows.
@@ -116,7 +116,7 @@ fn tools(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
     let Some(&first) = places.iter().min() else { return Vec::new() };
     let at = |row: usize| Location::Shift { what: Some("tool".into()), row, after: context.pose_name(row) };
     let always = tool_moved(context, first..context.configurations.len(), at(first - 1));
-    places.into_iter().map(|before| always.from_row(before, at(before - 1))).collect()
+    places.into_iter().map(|before| always.starting_at(before, at(before - 1))).collect()
 }
 
 /// The ball elsewhere in {T} at some rows.

@@ -40,7 +40,7 @@ impl Column {
     }
 
     /// The same from a row on.
-    fn from_row(&self, row: usize) -> Column {
+    fn starting_at(&self, row: usize) -> Column {
         let first = if self.pattern.is_some() { row } else { 3 * row };
         let skip = (self.skip + first.saturating_sub(self.first)).min(self.all.len());
         Column { first: first.max(self.first), skip, ..self.clone() }
@@ -94,8 +94,8 @@ impl Entry {
     }
 
     /// The same from a row on, told to be at another place.
-    pub fn from_row(&self, row: usize, location: Location) -> Entry {
-        let columns = self.columns.iter().map(|column| column.from_row(row)).collect();
+    pub fn starting_at(&self, row: usize, location: Location) -> Entry {
+        let columns = self.columns.iter().map(|column| column.starting_at(row)).collect();
         Entry { candidate: Candidate { location, ..self.candidate.clone() }, law: self.law.clone(), columns }
     }
 

@@ -264,7 +264,8 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Option
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
     let moves = moves::all(campaign, &draft, &meant, &forces);
     let of_rows = moves::of_rows::of_rows(campaign, &draft);
-    let mut search = MistakeSearch { draft, bodies, moves, of_rows, guess_weight: 1.0 };
+    let tip_mass = campaign.rod.as_ref().map_or(0.0, |rod| rod.tip_mass);
+    let mut search = MistakeSearch { draft, bodies, moves, of_rows, tip_mass, guess_weight: 1.0 };
     let mut result = if is_sure { None } else { search.found() };
     let is_rough = |(_, best, _): &(FittedDraft, FittedDraft, Vec<AdoptedStep>)| {
         best.steps.is_empty() && !search.has_failed(best) && search.is_rough_guess(best)

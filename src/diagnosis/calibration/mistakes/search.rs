@@ -77,6 +77,8 @@ pub(super) struct MistakeSearch<'a> {
     pub moves: Vec<PossibleMistake>,
     /// What may have gone wrong with some rows alone.
     pub of_rows: Vec<PossibleMistake>,
+    /// What the rod's file says of the mass on the tip, kg.
+    pub tip_mass: f64,
     /// Times that it costs more than usual that base or tip was a rough guess: where a calibration
     /// that begins with it does not arrive, it was no guess.
     pub guess_weight: f64,

@@ -93,7 +93,7 @@ impl Entry {
         Entry { candidate, law: Law::Only, columns }
     }
 
-    /// The same from a row on, told to be at another place.
+    /// The same from a row on, at another place.
     pub fn starting_at(&self, row: usize, location: Location) -> Entry {
         let columns = self.columns.iter().map(|column| column.starting_at(row)).collect();
         Entry { candidate: Candidate { location, ..self.candidate.clone() }, law: self.law.clone(), columns }
@@ -128,4 +128,37 @@ pub fn linear(name: impl Into<String>, size: f64) -> Parameter {
 /// The same of what nature has no less of than `least`: play, friction, what gives way.
 pub fn at_least(least: f64, parameter: Parameter) -> Parameter {
     Parameter { bounds: (least, f64::INFINITY), ..parameter }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three numbers for each of four rows, with a pattern and without.
+    #[test]
+    fn a_column_from_a_row_on_is_the_rest_of_it() {
+        let of = |column: &Column| {
+            let mut response = DVector::zeros(12);
+            column.add_to(&mut response, 2.0);
+            response
+        };
+        let along: Vec<f64> = (0..12).map(f64::from).collect();
+        let pattern = Pattern { block: 3, values: along.clone().into() };
+        let plain = Column::new(3, along[3..].to_vec(), None);
+        let weighted = Column::new(1, vec![1.0; 3], Some(pattern));
+        for column in [plain, weighted] {
+            let from =
+                |row: usize| DVector::from_fn(12, |i, _| if i < 3 * row { 0.0 } else { 2.0 * along[i] });
+            assert_eq!(of(&column), from(1));
+            for row in 1..4 {
+                assert_eq!(of(&column.starting_at(row)), from(row));
+                assert_eq!(
+                    column.starting_at(row).stored(1.0).values.len(),
+                    column.values().len() * (4 - row) / 3
+                );
+            }
+            // and again
+            assert_eq!(of(&column.starting_at(2).starting_at(3)), from(3));
+        }
+    }
 }

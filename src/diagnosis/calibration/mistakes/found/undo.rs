@@ -6,7 +6,7 @@ use super::super::draft::{Draft, DraftChange, change_joints};
 use super::super::moves::Other;
 use super::super::quick;
 use super::super::quick::{Fit, LoadedRobot, Worthwhile};
-use super::super::search::{FittedDraft, MistakeSearch, SearchStep};
+use super::super::search::{FittedDraft, MistakeSearch, SearchStep, score::FAILED};
 use super::super::{Mended, Neighbours};
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Compensation, Mode};
@@ -79,7 +79,8 @@ impl Mended {
             // what a tracker saw of the one it saw of the other; what a clamp reads it never sees
             if recorded.measurements.groups.iter().all(|group| group.name.is_tracked()) {
                 let at = best.fit.bases.first().map(|base| (base, &best.fit.tool));
-                change_positions(validation, &robot, tool, at, &draft.positions_changed);
+                let most = FAILED * search.bodies[best.thin.body].reach;
+                change_positions(validation, &robot, tool, at, (&draft.positions_changed, most));
             }
         }
         Ok(())
@@ -125,14 +126,14 @@ fn fitted(recording: &Recording, robot: &Robot, tool: Vector3<f64>) -> Option<Fi
 }
 
 /// The positions of a validation as they are meant, where it holds the mistake too: where they are
-/// far nearer to the tips so, from the place of the tracker (the base and the tip `at` it) or,
-/// should it have stood elsewhere, from any.
+/// far nearer to the tips so, and no farther than `most` (m), from the place of the tracker (the
+/// base and the tip `at` it) or, should it have stood elsewhere, from any.
 fn change_positions(
     validation: &mut Recording,
     robot: &Robot,
     tool: Vector3<f64>,
     at: Option<(&Pose, &Vector3<f64>)>,
-    change: &Matrix3<f64>,
+    (change, most): (&Matrix3<f64>, f64),
 ) {
     if *change == Matrix3::identity() {
         return;
@@ -151,7 +152,7 @@ fn change_positions(
     let from_anywhere =
         |recording: &Recording| fitted(recording, robot, tool).and_then(|fit| median(&fit.residuals));
     let is_cured = |before: Option<f64>, after: Option<f64>| {
-        before.zip(after).is_some_and(|(before, after)| after < CURED * before)
+        before.zip(after).is_some_and(|(before, after)| after < (CURED * before).min(most))
     };
     if is_cured(from_there(validation), from_there(&meant))
         || is_cured(from_anywhere(validation), from_anywhere(&meant))

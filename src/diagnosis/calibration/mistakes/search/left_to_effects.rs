@@ -12,6 +12,7 @@ pub(super) const DISPLACED: f64 = -7.5;
 /// The price of a tip that is elsewhere from some row on: three numbers and the row.
 const SLIPPED: f64 = -12.0;
 /// A mass at the tip that nobody stated, kg: how large it may be, and how finely it is sought.
+/// Nothing is lighter than without what the file says.
 const TIP: (f64, f64) = (1.0, 1e-3);
 /// The price of a contact force of another size, and the sizes that are tried beside one that a
 /// unit says.
@@ -111,7 +112,7 @@ impl MistakeSearch<'_> {
             let fit = fit(&from.thin, &body, Worthwhile::ANY)?;
             Some(self.scored(from.steps.clone(), from.thin.clone(), fit).score)
         };
-        let best = largest(|mass| with(mass).unwrap_or(f64::NEG_INFINITY), -TIP.0, TIP.0, TIP.1);
+        let best = largest(|mass| with(mass).unwrap_or(f64::NEG_INFINITY), -self.tip_mass, TIP.0, TIP.1);
         Some(with(best)? + FORCE.0 + self.log_prior(std::slice::from_ref(step)))
     }
 }

@@ -141,6 +141,23 @@ fn a_contact_force_the_other_way_round() {
     assert_eq!(meant.contact_force, right.contact_force);
 }
 
+/// Clamps that stand on one edge feel the force on the device along the vertical, and so they feel
+/// what hangs on the tip: 400 g look like the sign of the force.
+#[test]
+fn a_heavier_tip_is_no_force_the_other_way_round() {
+    for mass in [0.35, 0.4, 0.45] {
+        let mut heavier = tx90();
+        let compliance = Compensation::new(&heavier, Mode::Fea).unwrap().compliance.unwrap().force;
+        let weight = heavier.robot.gravity * mass;
+        for row in 0..heavier.measurements.len() {
+            let q = heavier.measurements.joints(row).to_vec();
+            let turn = heavier.robot.flange_at(&q).rotation;
+            points(&mut heavier)[row] += turn * compliance * turn.transpose() * weight;
+        }
+        assert_eq!(found(&heavier), [], "{mass} kg");
+    }
+}
+
 /// A third of the positions belong to nothing, in which the calibration still fails: what is seen
 /// beside that is not sure enough to be written into a file.
 #[test]

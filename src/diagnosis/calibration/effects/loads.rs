@@ -21,7 +21,7 @@ use crate::units::DEG;
 /// Share by which a rod is softer than its model.
 const SOFTNESS: f64 = 0.27;
 /// Mass at the tip that was forgotten, kg.
-const FORGOTTEN_AT_TIP: f64 = 0.05;
+pub(in crate::diagnosis::calibration) const FORGOTTEN_AT_TIP: f64 = 0.05;
 /// Mass at the flange that was forgotten, kg.
 const FORGOTTEN_AT_FLANGE: f64 = 0.5;
 /// How far from level a robot stands that nobody has levelled, rad.

@@ -4,6 +4,7 @@ mod fixtures;
 mod undo;
 
 use super::super::effects::fixture::CLAMP_POSE;
+use super::super::effects::loads::TIP_MASS;
 use super::super::effects::mistakes::FRAME_MISTAKE;
 use super::super::effects::mounting::{BASE_SHIFT, TOOL_SHIFT};
 use super::draft::DraftChange;
@@ -94,6 +95,9 @@ impl Mended {
         if let Some(clamp) = found.may_be_clamp {
             let name = self.campaign.measurements.groups[clamp].name.to_string();
             rivals.push(Rival::without_term(&CLAMP_POSE.effect, Location::Named(name), 1.0));
+        }
+        if let Some(odds) = found.may_be_tip {
+            rivals.push(Rival::without_term(&TIP_MASS.effect, Location::Part(Part::Tip), odds));
         }
         finding.rivals = rivals;
         finding.next = finding.direct_check(&finding.rivals.iter().collect::<Vec<_>>());

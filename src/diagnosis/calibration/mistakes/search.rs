@@ -68,6 +68,8 @@ pub(super) struct AdoptedStep {
     pub rivals: Vec<(&'static Effect, Key, f64)>,
     /// True where a clamp, instead, may stand elsewhere from the same row on.
     pub may_be_clamp: Option<usize>,
+    /// The odds against another mass at the tip, where that may be it instead.
+    pub may_be_tip: Option<f64>,
 }
 
 /// A campaign with all that may have been mistaken.

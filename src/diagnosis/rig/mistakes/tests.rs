@@ -75,6 +75,11 @@ fn rows(bench: Bench) -> Vec<Reading> {
 /// Read on `file`'s rod, whose numbers are 1 % off: to 2 µm, in steps of 0.1 µm, a zero for each
 /// run.
 fn recorded(file: &Rod, bench: Bench, seed: u64) -> Readings {
+    read(file, rows(bench), seed)
+}
+
+/// The same of any rows.
+fn read(file: &Rod, rows: Vec<Reading>, seed: u64) -> Readings {
     let mut random = Random::seeded(seed, 0);
     let mut actual = file.clone();
     let (e, g) = (1.0 + 0.01 * random.normal(), 1.0 + 0.02 * random.normal());
@@ -83,7 +88,7 @@ fn recorded(file: &Rod, bench: Bench, seed: u64) -> Readings {
         pipe.material.shear_modulus *= g;
     }
     actual.l2 += 0.3e-3 * random.normal();
-    let readings = Readings::from_rows(rows(bench)).unwrap();
+    let readings = Readings::from_rows(rows).unwrap();
     let model = RigModel::with_effects(&readings, Some(&actual), &Wanted::Like(&[])).unwrap().0;
     let mut readings = readings;
     let zeros: Vec<f64> = (0..100).map(|_| UM * random.normal()).collect();

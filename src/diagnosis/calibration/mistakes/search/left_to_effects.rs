@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::super::super::effects::loads::FORGOTTEN_AT_TIP;
 use super::super::draft::{DraftChange, Rows};
 use super::super::quick::{Worthwhile, density, fit, t_scale};
 use super::{FittedDraft, MistakeSearch, ODDS, SearchStep};
@@ -28,7 +29,7 @@ impl MistakeSearch<'_> {
             self.slipped(changed, from),
             self.another_force(changed, from),
             // that explains alike, not less: the heavier tip has a number of its own to choose
-            self.heavier_tip(changed, from).map(|score| score - ODDS),
+            changed.steps.last().and_then(|step| self.heavier_tip(step, from)).map(|score| score - ODDS),
         ];
         let displaced = self.displaced(changed, from).into_iter();
         let displaced = displaced.chain(self.moved_fixtures(changed, from));
@@ -102,10 +103,11 @@ impl MistakeSearch<'_> {
         scores.max_by(f64::total_cmp)
     }
 
-    /// Another mass at the tip than the stated one, where the contact force is changed: clamps that
-    /// all stand on the same edge feel both along the vertical. It is as rare as the mistake.
-    fn heavier_tip(&self, changed: &FittedDraft, from: &FittedDraft) -> Option<f64> {
-        let Some(step @ SearchStep::Move(number)) = changed.steps.last() else { return None };
+    /// The score of another mass at the tip than the stated one, where `step` changes the contact
+    /// force: clamps that all stand on the same edge feel both along the vertical. It is as rare as
+    /// the mistake, and rarer the more it is.
+    pub(super) fn heavier_tip(&self, step: &SearchStep, from: &FittedDraft) -> Option<f64> {
+        let SearchStep::Move(number) = step else { return None };
         self.moves[*number].force?;
         let with = |mass: f64| {
             let body = self.bodies[from.thin.body].with_tip_heavier_by(mass, &from.fit.tool);
@@ -113,7 +115,9 @@ impl MistakeSearch<'_> {
             Some(self.scored(from.steps.clone(), from.thin.clone(), fit).score)
         };
         let best = largest(|mass| with(mass).unwrap_or(f64::NEG_INFINITY), -self.tip_mass, TIP.0, TIP.1);
-        Some(with(best)? + FORCE.0 + self.log_prior(std::slice::from_ref(step)))
+        // Cauchy's tail beyond what is usual
+        let unusual = -(best / FORGOTTEN_AT_TIP).powi(2).ln_1p();
+        Some(with(best)? + FORCE.0 + unusual + self.log_prior(std::slice::from_ref(step)))
     }
 }
 
@@ -126,7 +130,11 @@ fn largest(f: impl Fn(f64) -> f64, low: f64, high: f64, within: f64) -> f64 {
     let mut best = grid.fold((low, f64::NEG_INFINITY), better);
     while step > within {
         step /= 2.0;
-        best = [best.0 - step, best.0 + step].into_iter().map(|x| (x, f(x))).fold(best, better);
+        best = [best.0 - step, best.0 + step]
+            .map(|x| x.clamp(low, high))
+            .into_iter()
+            .map(|x| (x, f(x)))
+            .fold(best, better);
     }
     best.0
 }

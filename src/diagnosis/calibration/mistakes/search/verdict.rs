@@ -84,7 +84,9 @@ impl MistakeSearch<'_> {
             }
             _ => None,
         };
-        Some(AdoptedStep { rivals: rivals.collect(), step, log_odds, explains, may_be_clamp })
+        let lead = self.heavier_tip(&step, &rest).map(|score| (best.score - score).max(0.0));
+        let may_be_tip = lead.filter(|lead| *lead < ODDS).map(f64::exp);
+        Some(AdoptedStep { rivals: rivals.collect(), step, log_odds, explains, may_be_clamp, may_be_tip })
     }
 }
 

@@ -133,27 +133,35 @@ fn friction_of_a_step_of_the_loads_displaces_nothing() {
     });
 }
 
-/// The same where the slide, after a reversal, first holds the rod where it is: no zero of a way
-/// stands for that.
+/// The same where the slide, after a reversal, first holds the rod where it is, under more loads:
+/// no zero of a way stands for that. Rows that are displaced are found among these loads as well.
 #[test]
 fn friction_that_holds_the_rod_after_a_reversal_displaces_nothing() {
-    recordings(&[Bench::Full], 1, |what, file, clean| {
-        for friction in [3.0, 5.0, 6.0] {
-            let mut rubbing = clean.clone();
-            let (mut run, mut seen) = (String::new(), 0.0);
-            for row in &mut rubbing.rows {
-                let own = format!("{:?} {}", row.trial, row.direction.axis);
-                if own != run {
-                    (run, seen) = (own, 0.0);
-                }
-                seen = f64::clamp(seen, row.load - friction, row.load + friction);
-                let share = seen / row.load;
-                row.offset.iter_mut().flatten().for_each(|y| *y *= share);
-            }
-            let named = found(&rubbing, Some(file));
-            assert!(named.iter().all(|name| !name.contains("row_mistake")), "{what} {friction}: {named:?}");
+    let step = 12.0 / 7.0;
+    let mut rows = Vec::new();
+    for (axis, trial) in Axis::ALL.into_iter().flat_map(|axis| (1..=3).map(move |trial| (axis, trial))) {
+        for k in (1..=7).chain((1..7).rev()) {
+            let row = Reading::new(Direction::along(axis), step * f64::from(k)).with_trial(trial.to_string());
+            rows.push(Axis::ALL.into_iter().fold(row, |row, channel| row.with_offset(channel, 0.0)));
         }
-    });
+    }
+    let file = rod(ROD_5);
+    let clean = read(&file, rows, 4);
+    for friction in [1.0, 1.2] {
+        let (mut rubbing, mut run, mut seen) = (clean.clone(), None, 0.0);
+        for row in &mut rubbing.rows {
+            let own = (row.direction.axis, row.trial.clone());
+            if run.replace(own.clone()) != Some(own) {
+                seen = 0.0;
+            }
+            seen = f64::clamp(seen, row.load - friction * step, row.load + friction * step);
+            row.offset.iter_mut().flatten().for_each(|y| *y *= seen / row.load);
+        }
+        let named = found(&rubbing, Some(&file));
+        assert!(named.iter().all(|name| !name.contains("row_mistake")), "{friction}: {named:?}");
+    }
+    let expected = format!("row_mistake dx_um, dy_um, dz_um, rows 46 to {}", clean.rows.len());
+    assert_eq!(found(&pushed_down(&clean, 45), Some(&file)), [expected]);
 }
 
 #[test]

@@ -137,7 +137,7 @@ mod tests {
     /// Three numbers for each of four rows, with a pattern and without.
     #[test]
     fn a_column_from_a_row_on_is_the_rest_of_it() {
-        let of = |column: &Column| {
+        let added = |column: &Column| {
             let mut response = DVector::zeros(12);
             column.add_to(&mut response, 2.0);
             response
@@ -149,16 +149,16 @@ mod tests {
         for column in [plain, weighted] {
             let from =
                 |row: usize| DVector::from_fn(12, |i, _| if i < 3 * row { 0.0 } else { 2.0 * along[i] });
-            assert_eq!(of(&column), from(1));
+            assert_eq!(added(&column), from(1));
             for row in 1..4 {
-                assert_eq!(of(&column.starting_at(row)), from(row));
+                assert_eq!(added(&column.starting_at(row)), from(row));
                 assert_eq!(
                     column.starting_at(row).stored(1.0).values.len(),
                     column.values().len() * (4 - row) / 3
                 );
             }
             // and again
-            assert_eq!(of(&column.starting_at(2).starting_at(3)), from(3));
+            assert_eq!(added(&column.starting_at(2).starting_at(3)), from(3));
         }
     }
 }

@@ -5,3 +5,4 @@ pub mod chronicle;
 pub mod columns;
 pub mod datum;
 pub mod evidence;
+mod rezeroed;

@@ -55,7 +55,7 @@ pub fn trial_name(datum: &Datum) -> Option<String> {
 pub fn sensor_in_run(first: &Datum, last: &Datum) -> Key {
     let key = Key::new(column(first.channel)).rows(axis_rows(first.direction.axis));
     match &first.trial {
-        Some(trial) => key.rows(format!("trial {trial}")),
-        None => key.rows(rows_between(first.row, last.row)),
+        Some(trial) if !first.has_other_direction => key.rows(format!("trial {trial}")),
+        _ => key.rows(rows_between(first.row, last.row)),
     }
 }

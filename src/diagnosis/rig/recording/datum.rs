@@ -5,9 +5,10 @@
 //! channel, so that rows in another order, one row per station and one row per channel are the same
 //! recording: see [`chronicle`](super::chronicle).
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::chronicle::{Chronicle, Motion};
+use super::rezeroed::is_zeroed_by_direction;
 use crate::diagnosis::rig::numbering::numbered;
 use crate::inference::RunName;
 use crate::rig::readings::{Axis, Direction, Driven, Phase, Reading, Readings};
@@ -46,6 +47,9 @@ pub struct Datum {
     /// Number of the run, from 0: one trial of a session along one axis, from one zeroing to the
     /// next.
     pub run: usize,
+    /// True where that is one direction of the axis only: the readings show that the other has a
+    /// zero of its own.
+    pub(in crate::diagnosis::rig) has_other_direction: bool,
     /// Number of the instant in the recording, from 0: data of one instant share it.
     pub order: usize,
     /// Time of the reading, s.
@@ -192,6 +196,7 @@ fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {
                 trial: row.trial.clone(),
                 trial_number: own.trial,
                 run: own.run,
+                has_other_direction: false,
                 order: own.place,
                 time: row.time,
                 loaded_at: row.loaded_at,
@@ -214,6 +219,17 @@ fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {
     let orders = numbered(data.iter().map(|datum| datum.order));
     for ((datum, run), order) in data.iter_mut().zip(runs).zip(orders) {
         (datum.run, datum.order) = (run, order);
+    }
+    if driven == Driven::Load && is_zeroed_by_direction(&data) {
+        let runs = numbered(data.iter().map(|datum| (datum.run, datum.direction)));
+        let mut directions: HashMap<usize, HashSet<i8>> = HashMap::new();
+        for datum in &data {
+            directions.entry(datum.run).or_default().insert(datum.direction.sign);
+        }
+        for (datum, run) in data.iter_mut().zip(runs) {
+            datum.has_other_direction = directions[&datum.run].len() > 1;
+            datum.run = run;
+        }
     }
     find_peaks(&mut data);
     data

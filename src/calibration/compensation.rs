@@ -82,15 +82,19 @@ impl Compensation {
             gravity: compliance.gravity + compliance.force * (mass * STANDARD_GRAVITY),
             ..*compliance
         };
-        let with = |body: Body| {
-            let all = body.mass + mass;
-            Body { mass: all, centre: (body.centre * body.mass + tip * mass) / all }
-        };
         Compensation {
             compliance: self.compliance.as_ref().map(more),
-            payload: self.payload.map(with).filter(|body| body.mass > 0.0),
-            ..self.clone()
+            ..self.with_payload_heavier_by(mass, tip)
         }
+    }
+
+    /// The same with so much more at a point of the flange or of what is on it (in {T}, m), kg,
+    /// under which the rod does not bend.
+    pub(crate) fn with_payload_heavier_by(&self, mass: f64, point: &Vector3<f64>) -> Self {
+        let body = self.payload.unwrap_or(Body { mass: 0.0, centre: *point });
+        let all = body.mass + mass;
+        let body = Body { mass: all, centre: (body.centre * body.mass + point * mass) / all };
+        Compensation { payload: Some(body).filter(|body| body.mass > 0.0), ..self.clone() }
     }
 
     /// Of a campaign in a mode.
@@ -154,6 +158,12 @@ impl Compensation {
 
     /// What deflects the tip at each row of a recording, in {W}, m.
     pub fn deflections(&self, setup: &Setup, recording: &Recording) -> Vec<Vector3<f64>> {
+        self.tips(setup, recording).into_iter().map(|(_, deflection)| deflection).collect()
+    }
+
+    /// Where the tip is at each row of a recording, and what has deflected it from where the joints
+    /// bring it under their loads, in {W}, m.
+    pub(crate) fn tips(&self, setup: &Setup, recording: &Recording) -> Vec<(Vector3<f64>, Vector3<f64>)> {
         let mut pass = Pass::at_rest(recording);
         for _ in 0..TORQUE_ROUNDS {
             self.update(setup, recording, &mut pass);
@@ -161,7 +171,8 @@ impl Compensation {
         let mut kinematics = Kinematics::new(setup);
         let in_world = |row: usize| {
             kinematics.update(recording.joints(row), pass.torque(recording, row));
-            kinematics.flange.rotation * pass.deflection[row]
+            let deflection = kinematics.flange.rotation * pass.deflection[row];
+            (kinematics.tip + deflection, deflection)
         };
         (0..recording.len()).map(in_world).collect()
     }

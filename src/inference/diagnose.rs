@@ -101,6 +101,7 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let own = if ratio > ZEROS_APART * ZEROS_APART { noise / (1.0 + ratio).sqrt() } else { noise };
     let is_too_much = evidence.most_scatter.is_some_and(|most| own > times * most);
     let are_many = are_many(evidence, &suspects);
+    let varying = if left_over.is_none() { search.varying(&hypothesis) } else { None };
     let discrepancy = match &left_over {
         Some(DiscrepancyModel::Curve(longer)) => {
             Some(described(model, &search, evidence, longer, &predicted))
@@ -108,6 +109,7 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         Some(DiscrepancyModel::Replicates) => {
             Some(Discrepancy::without_curve(ShownBy::Repeats, after.clone()))
         }
+        None if varying.is_some() => varying,
         None if is_contradicted => Some(Discrepancy::without_curve(ShownBy::StatedNoise, after.clone())),
         None if is_too_much => Some(Discrepancy::without_curve(ShownBy::Size, after.clone())),
         None if are_many => Some(Discrepancy::without_curve(ShownBy::Suspects, after.clone())),

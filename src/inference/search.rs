@@ -11,6 +11,7 @@ pub(in crate::inference) mod pairs;
 pub(in crate::inference) mod parts;
 pub(in crate::inference) mod pruning;
 pub(in crate::inference) mod selection;
+pub(in crate::inference) mod varying;
 
 use std::sync::Arc;
 

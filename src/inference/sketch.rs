@@ -52,8 +52,8 @@ pub struct Sketch {
     pub left: DVector<f64>,
     /// The errors that neighbours have in common beside it.
     pub correlated_noise: Option<CorrelatedNoise>,
-    /// Ln of the probability of all of it, but for a constant.
-    log_probability: f64,
+    /// Ln of the probability of all of it, but for a constant of the recording.
+    pub log_probability: f64,
 }
 
 /// Of a recording whose `neighbours` nobody knows.

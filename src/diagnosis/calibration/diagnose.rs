@@ -2,12 +2,14 @@
 
 pub mod beside;
 pub mod forward_model;
+pub mod hung;
 pub mod limits;
 pub mod memory;
 pub mod prepared;
 pub mod tails;
 
 use self::beside::{calibrated_beside, unequal};
+use self::hung::{beside_masses, may_hide};
 use self::limits::{limits, noisy};
 use self::memory::check_memory;
 use self::prepared::{FirstLook, Prepared};
@@ -67,9 +69,11 @@ pub fn diagnose_calibrated<'c>(
     check_memory(campaign)?;
     let mut prepared = Prepared::new(campaign, calibration)?;
     let mut look = FirstLook::default();
+    let mut may_hide_masses = false;
     for _ in 0..ROUNDS {
         let Sketch { hypothesis, left, correlated_noise, .. } = sketch(&prepared.model, &prepared.evidence);
         prepared.evidence.correlated_noise = correlated_noise;
+        may_hide_masses |= may_hide(&prepared, &hypothesis);
         let about = calibrated_beside(&prepared, &hypothesis, &left)?;
         let noise = unequal(&prepared, &hypothesis, &left)?;
         let is_equal = noise.is_none() == look.scatter.is_none();
@@ -85,6 +89,9 @@ pub fn diagnose_calibrated<'c>(
         prepared = Prepared::about(campaign, calibration, about, &look)?;
         prepared.evidence.correlated_noise = correlated_noise;
     }
+    if may_hide_masses {
+        prepared = beside_hidden_masses(campaign, prepared, &look)?;
+    }
     let mut diagnosis = infer(&prepared.model, &prepared.evidence);
     let Prepared { model, evidence, absorbed, not_testable, context, .. } = prepared;
     let next = next_measurements(&model, &context, &evidence, &diagnosis)?;
@@ -97,7 +104,9 @@ pub fn diagnose_calibrated<'c>(
     let of_neighbours = evidence.correlated_noise;
     limits.extend(of_neighbours.map(|noise| Limitation::CorrelatedPoses(noise.share, noise.length)));
     let mut found = Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits, law };
-    if found.diagnosis.discrepancy.is_none() && found.is_implausible() {
+    // what was named varies in whatever way, where it does not explain the poses at all
+    let is_told = |left: &Discrepancy| left.shown_by != ShownBy::Varying;
+    if !found.diagnosis.discrepancy.as_ref().is_some_and(is_told) && found.is_implausible() {
         let shape = found.diagnosis.after.clone();
         let rms = found.left_by_coordinate();
         found.diagnosis.discrepancy =
@@ -105,6 +114,26 @@ pub fn diagnose_calibrated<'c>(
     }
     complete(&mut found);
     Ok(found)
+}
+
+/// The same about the robot beside a mass that the calibration has hidden, where the poses are more
+/// probable there.
+fn beside_hidden_masses<'c>(
+    campaign: &'c Campaign,
+    prepared: Prepared<'c>,
+    look: &FirstLook,
+) -> Result<Prepared<'c>> {
+    let first = sketch(&prepared.model, &prepared.evidence);
+    let (mut best, mut log_probability) = (prepared, first.log_probability);
+    for about in beside_masses(&best, &first.hypothesis)? {
+        let mut other = Prepared::about(campaign, best.model.calibration.clone(), about, look)?;
+        let found = sketch(&other.model, &other.evidence);
+        other.evidence.correlated_noise = found.correlated_noise;
+        if found.log_probability > log_probability {
+            (best, log_probability) = (other, found.log_probability);
+        }
+    }
+    Ok(best)
 }
 
 /// What only the whole diagnosis knows of a finding: where it is written, and the whole error of a

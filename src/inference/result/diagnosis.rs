@@ -94,6 +94,8 @@ impl Discrepancy {
 pub enum ShownBy {
     /// A smooth curve describes it.
     Curve,
+    /// What was named is larger here than there.
+    Varying,
     /// Averages of repeats differ from the model by more than the repeats scatter.
     Repeats,
     /// So many data are far off that they are no single ones.

@@ -31,21 +31,44 @@ impl Search<'_> {
     pub fn with_columns(
         &self,
         hypothesis: &Hypothesis,
+        linear: &(DVector<f64>, DMatrix<f64>),
+        more: &DMatrix<f64>,
+    ) -> (f64, DVector<f64>) {
+        let (log_probability, estimate) = self.extended(hypothesis, linear, more, &vec![1; more.ncols()]);
+        let (r, columns) = linear;
+        let own = columns.ncols();
+        let left = r - columns * estimate.rows(0, own) - more * estimate.rows_range(own..);
+        (log_probability, left)
+    }
+
+    /// The same with columns that are one effect; and the factor of each of them.
+    pub fn with_effect(
+        &self,
+        hypothesis: &Hypothesis,
+        linear: &(DVector<f64>, DMatrix<f64>),
+        more: &DMatrix<f64>,
+    ) -> (f64, DVector<f64>) {
+        let (log_probability, estimate) = self.extended(hypothesis, linear, more, &[more.ncols()]);
+        (log_probability, estimate.rows_range(linear.1.ncols()..).into_owned())
+    }
+
+    fn extended(
+        &self,
+        hypothesis: &Hypothesis,
         (r, columns): &(DVector<f64>, DMatrix<f64>),
         more: &DMatrix<f64>,
+        effects: &[usize],
     ) -> (f64, DVector<f64>) {
         let first = self.background.0.ncols();
         let own = columns.columns(first, columns.ncols() - first);
-        let mut effects = own.clone_owned().resize_horizontally(own.ncols() + more.ncols(), 0.0);
-        effects.columns_mut(own.ncols(), more.ncols()).copy_from(more);
-        let mut moments = self.moments_of(r, &effects, &hypothesis.terms);
-        moments.bounds.resize(first + effects.ncols(), (f64::NEG_INFINITY, f64::INFINITY));
-        moments.effects.extend(std::iter::repeat_n(1, more.ncols()));
+        let mut all = own.clone_owned().resize_horizontally(own.ncols() + more.ncols(), 0.0);
+        all.columns_mut(own.ncols(), more.ncols()).copy_from(more);
+        let mut moments = self.moments_of(r, &all, &hypothesis.terms);
+        moments.bounds.resize(first + all.ncols(), (f64::NEG_INFINITY, f64::INFINITY));
+        moments.effects.extend(effects);
         let scored = moments.score();
-        let estimate = &scored.estimate;
-        let left = r - &self.background.0 * estimate.rows(0, first) - effects * estimate.rows_range(first..);
         let prior: f64 = hypothesis.terms.iter().map(|term| self.prior[term.candidate]).sum();
-        (scored.log_evidence + prior, left)
+        (scored.log_evidence + prior, scored.estimate)
     }
 
     /// Residual and columns of the effects of a hypothesis at their values, linear about the

@@ -4,15 +4,17 @@
 //! tip becomes a softer wrist, a slipped tool turns joints by milliradians. Columns that are made
 //! there are those of another robot. So the campaign is calibrated once more with what was found
 //! taken out of its rows, and the search begins anew about that robot, of which nothing is taken
-//! out then.
+//! out then. A mass that hangs there is a load of that calibration: how far joints give way to it
+//! depends on what they are calibrated to.
 
-use nalgebra::DVector;
+use nalgebra::{DVector, Vector3};
 
 use super::super::model::context::{Context, plausible};
+use super::super::model::law::{Hung, Law};
 use super::prepared::Prepared;
 use crate::calibration::{Calibration, Compensation, Noise, Robust, calibrate_from};
 use crate::error::Result;
-use crate::inference::{Hypothesis, rms};
+use crate::inference::{Hypothesis, Term, rms};
 use crate::units::URAD;
 
 /// A turn of a joint under its largest torque that changes columns, rad.
@@ -20,6 +22,14 @@ const TURNED: f64 = 20.0 * URAD;
 /// Share by which the residual of a robot that is calibrated again may differ from what the linear
 /// model says of it.
 const LINEAR: f64 = 0.1;
+
+/// What acts on the rod and the arm beside what the campaign says.
+pub struct Loads {
+    /// Masses that nobody stated, kg.
+    pub hung: Vec<(Hung, f64)>,
+    /// What else displaces the tip at each row, m; empty where nothing does.
+    pub displaced: Vec<Vector3<f64>>,
+}
 
 /// That robot, the rows as if nothing had been found; `None` where it is the same for all that its
 /// columns show.
@@ -32,25 +42,54 @@ pub fn calibrated_beside<'c>(
     if hypothesis.terms.is_empty() {
         return Ok(None);
     }
-    let (campaign, known) = (model.campaign, &model.calibration);
-    let found = model.by_row(&model.terms.response(&hypothesis.terms));
-    let compensation = Compensation { displaced: found.clone(), ..Compensation::new(campaign, known.mode)? };
-    let free: Vec<_> = known.parameters.iter().map(|estimate| estimate.parameter).collect();
-    let start = known.start.clone();
-    let recording = &campaign.measurements;
-    let mut beside = calibrate_from(campaign, recording, start, &free, &compensation, &known.options)?;
+    let mass = |term: &Term| match model.law(term.candidate) {
+        Law::Hung(own) => Some((*own, term.values.first().copied().unwrap_or_default())),
+        _ => None,
+    };
+    let others: Vec<Term> = hypothesis.terms.iter().filter(|term| mass(term).is_none()).cloned().collect();
+    let loads = Loads {
+        hung: hypothesis.terms.iter().filter_map(mass).collect(),
+        displaced: model.by_row(&model.terms.response(&others)),
+    };
+    let Some((beside, about)) = calibrated_with(prepared, &loads)? else { return Ok(None) };
+    let recording = &model.campaign.measurements;
     let residual = |row: usize| -beside.deviations[row] * model.scale(row);
     let left = (0..recording.len()).flat_map(|row| <[f64; 3]>::from(residual(row)));
     let left = rms(&DVector::from_iterator(3 * recording.len(), left));
     let expected = rms(&by_linear_model.rows(0, prepared.evidence.recorded).into_owned());
-    if !turns(&prepared.context, &beside) && (left - expected).abs() <= LINEAR * expected {
+    let is_same = !turns(&prepared.context, &beside) && (left - expected).abs() <= LINEAR * expected;
+    Ok((!is_same).then_some(about))
+}
+
+/// A robot that is calibrated with these loads, and the same with the rows as if there were none;
+/// `None` where that has not converged.
+pub fn calibrated_with<'c>(
+    prepared: &Prepared<'c>,
+    loads: &Loads,
+) -> Result<Option<(Calibration<'c>, Calibration<'c>)>> {
+    let model = &prepared.model;
+    let (campaign, known) = (model.campaign, &model.calibration);
+    let plain = Compensation::new(campaign, known.mode)?;
+    let loaded = loads.hung.iter().fold(plain.clone(), |loaded, (own, mass)| match own {
+        Hung::Tip => loaded.with_tip_heavier_by(*mass, &known.setup.tool),
+        Hung::Flange => loaded.with_payload_heavier_by(*mass, &Vector3::zeros()),
+    });
+    let compensation = Compensation { displaced: loads.displaced.clone(), ..loaded.clone() };
+    let free: Vec<_> = known.parameters.iter().map(|estimate| estimate.parameter).collect();
+    let start = known.start.clone();
+    let recording = &campaign.measurements;
+    let beside = calibrate_from(campaign, recording, start, &free, &compensation, &known.options)?;
+    if !beside.is_converged {
         return Ok(None);
     }
-    for (row, found) in found.into_iter().enumerate() {
-        beside.deviations[row] -= found;
-        beside.deflections[row] -= found;
+    let mut about = beside.clone();
+    let [plain, loaded] = [plain, loaded].map(|compensation| compensation.tips(&beside.setup, recording));
+    for (row, (plain, loaded)) in plain.iter().zip(&loaded).enumerate() {
+        let displaced = loads.displaced.get(row).copied().unwrap_or_default();
+        about.deviations[row] -= loaded.0 - plain.0 + displaced;
+        about.deflections[row] -= loaded.1 - plain.1 + displaced;
     }
-    Ok(beside.is_converged.then_some(beside))
+    Ok(Some((beside, about)))
 }
 
 /// True where its drives are otherwise compliant than those that the columns were made with.

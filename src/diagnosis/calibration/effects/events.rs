@@ -86,7 +86,7 @@ pub static JOINT_SHIFT: CalibrationEffect = CalibrationEffect {
         kind: Kind::Event,
         summary: "the zero of a joint moved after one pose",
         formula: "Jⱼ·δ from some row on: δ is by how much more the joint turns than it shows",
-        prior: "0.5 mrad: a slip of an encoder's coupling that nobody sees; degrees are a mistake in some rows",
+        prior: "0.5 mrad: a slip of an encoder's coupling that nobody sees; from 0.05° on it is a mistake in some rows",
         parameters: &[(&["zero_urad"], "shift of the joint's zero")],
         needs: "poses in the order of recording",
         cause: "a slip of the joint or of its encoder",

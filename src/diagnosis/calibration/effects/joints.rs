@@ -142,6 +142,7 @@ fn compliance_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Play(_)
         | Law::Nonlinear(_)
         | Law::Rod(_)
+        | Law::Hung(_)
         | Law::Drift(..)
         | Law::Warms(..)
         | Law::Moved(_) => {
@@ -230,6 +231,7 @@ fn nonlinear_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Play(_)
         | Law::MassesUnknown(_)
         | Law::Rod(_)
+        | Law::Hung(_)
         | Law::Drift(..)
         | Law::Warms(..)
         | Law::Moved(_) => ("µrad/(N·m)²", "the square of"),

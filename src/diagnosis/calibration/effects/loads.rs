@@ -7,7 +7,7 @@
 use nalgebra::Vector3;
 
 use super::super::model::entry::linear;
-use super::super::model::law::{Law, RodLoad};
+use super::super::model::law::{Hung, Law, RodLoad};
 use super::super::model::{CalibrationModel, Configuration};
 use super::{
     CalibrationEffect, Context, Entry, Transfer, first, lack, law, no_event, out_of_the_points,
@@ -106,6 +106,7 @@ fn rod_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Play(_)
         | Law::Nonlinear(_)
         | Law::MassesUnknown(_)
+        | Law::Hung(_)
         | Law::Drift(..)
         | Law::Warms(..)
         | Law::Moved(_) => None,
@@ -169,7 +170,7 @@ fn tip_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let mut mass = linear("mass_g", FORGOTTEN_AT_TIP);
     // no less can hang there than nothing
     mass.bounds.0 = -context.modelled_mass.0;
-    vec![single(&TIP_MASS, Location::Part(Part::Tip), mass, column)]
+    vec![single(&TIP_MASS, Location::Part(Part::Tip), mass, column).by(Law::Hung(Hung::Tip))]
 }
 
 /// A mass at the flange that was forgotten.
@@ -205,7 +206,7 @@ fn payload_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry>
     let column = context.column(|_, there| there.joint_deflection(&there.flange.origin, &there.gravity));
     let mut mass = linear("mass_kg", FORGOTTEN_AT_FLANGE);
     mass.bounds.0 = -context.modelled_mass.1;
-    vec![single(&PAYLOAD_MASS, Location::Part(Part::Flange), mass, column)]
+    vec![single(&PAYLOAD_MASS, Location::Part(Part::Flange), mass, column).by(Law::Hung(Hung::Flange))]
 }
 
 /// A robot that does not stand level.

@@ -85,6 +85,7 @@ fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Nonlinear(_)
         | Law::MassesUnknown(_)
         | Law::Rod(_)
+        | Law::Hung(_)
         | Law::Drift(..)
         | Law::Warms(..)
         | Law::Moved(_) => (TakenUp::ByTorque, "taken up on the side that its load pulls to"),

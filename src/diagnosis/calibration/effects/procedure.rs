@@ -260,6 +260,7 @@ fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Nonlinear(_)
         | Law::MassesUnknown(_)
         | Law::Rod(_)
+        | Law::Hung(_)
         | Law::Moved(_) => {
             format!("Drift by {} at {}", size.with_unit("µm"), finding.location)
         }

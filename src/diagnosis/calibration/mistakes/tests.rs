@@ -143,6 +143,15 @@ fn angles_in_radians() {
 }
 
 #[test]
+fn angles_in_gon() {
+    let all = mended(&with_joints(&tracked(60, 7), |q| q.iter_mut().for_each(|q| *q /= 0.9)));
+    assert_eq!(all.found[0].effect.name, "unit_mistake");
+    assert_eq!(all.found[0].location.to_string(), "q1_deg … q6_deg");
+    assert!((all.found[0].estimates[0].value - 0.9).abs() < 1e-9);
+    assert_eq!(found(&with_joints(&tracked(60, 7), |q| q[2] /= 0.9)), one("unit_mistake", "q3_deg"));
+}
+
+#[test]
 fn zeros_a_quarter_or_half_turn_away() {
     for (joint, degrees) in [(1, 90.0), (2, -90.0), (3, 180.0)] {
         let wrong = with_joints(&tracked(60, 7), |q| q[joint] -= degrees * DEG);
@@ -181,6 +190,11 @@ fn one_column_in_another_unit() {
     for factor in [1.0 / 25.4, 1e3] {
         let wrong = |x: Vector3<f64>| Vector3::new(x.x, x.y, x.z * factor);
         assert_eq!(found(&with_positions(&tx90(), wrong)), one("unit_mistake", "z_mm"), "{factor}");
+    }
+    // centimetres and thousandths of an inch, of a tracker
+    for factor in [0.1, 1.0 / 0.0254] {
+        let wrong = |x: Vector3<f64>| Vector3::new(x.x, x.y * factor, x.z);
+        assert_eq!(found(&with_positions(&tracked(60, 7), wrong)), one("unit_mistake", "y_mm"), "{factor}");
     }
 }
 

@@ -25,6 +25,8 @@ pub enum Law {
     MassesUnknown(Vec<Option<usize>>),
     /// A rod of another stiffness.
     Rod(RodLoad),
+    /// A mass that nobody stated: what it does to the joints depends on how compliant they are.
+    Hung(Hung),
     /// Drift.
     Drift(Course, Frame),
     /// Drift of a joint or its link, or growth of the arm.
@@ -42,6 +44,16 @@ pub enum TakenUp {
     ByTorque,
     /// Friction: it stays at the side that it was driven to.
     ByApproach,
+}
+
+/// Where a mass hangs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Hung {
+    /// At the tip of the rod.
+    Tip,
+    /// At the flange.
+    Flange,
 }
 
 /// The load under which a rod's stiffness is another one.
@@ -102,6 +114,7 @@ impl Law {
             | Law::Nonlinear(_)
             | Law::MassesUnknown(_)
             | Law::Rod(_)
+            | Law::Hung(_)
             | Law::Drift(..)
             | Law::Warms(..)
             | Law::Moved(_) => None,
@@ -122,6 +135,7 @@ impl Law {
             | Law::Play(_)
             | Law::Nonlinear(_)
             | Law::Rod(_)
+            | Law::Hung(_)
             | Law::Drift(..)
             | Law::Warms(..)
             | Law::Moved(_) => self,

@@ -10,6 +10,9 @@ use crate::inference::Key;
 use crate::robot::Motion;
 use crate::units::DEG;
 
+/// Degrees of a gon.
+const GON: f64 = 0.9;
+
 impl List<'_> {
     pub(super) fn joints(&mut self) {
         let count = self.draft.joint_count;
@@ -161,6 +164,12 @@ impl List<'_> {
                 twice.estimates = exact("factor", PI / 180.0);
                 twice.log_prior = log_prior + UNUSUAL;
             }
+            let change = DraftChange::factors(&joints, count, GON);
+            let why = format!("{it} in gon, 400 to the turn, not in degrees");
+            let gon =
+                self.add(&UNIT_MISTAKE, Key::new(&name), change, &format!("Multiply {name} by {GON}"), &why);
+            gon.estimates = exact("factor", GON);
+            gon.log_prior = log_prior + UNUSUAL;
         }
     }
 }

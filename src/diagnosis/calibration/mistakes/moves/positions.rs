@@ -15,6 +15,8 @@ const FARTHEST_ROW: isize = 3;
 /// A ball in a clamp is displaced by less, m: by larger numbers it may be that they are in a
 /// smaller unit.
 const DISPLACEMENT: f64 = 10.0 * MM;
+/// A thousandth of an inch, mm.
+const MIL: f64 = 0.0254;
 
 impl List<'_> {
     pub(super) fn positions(&mut self) {
@@ -32,6 +34,7 @@ impl List<'_> {
             (10.0, "centimetres", UNUSUAL),
             (1e-3, "micrometres", UNUSUAL),
             (0.1, "tenths of a millimetre", RARE),
+            (MIL, "thousandths of an inch (mil)", UNUSUAL),
         ] {
             if factor < 1.0 && !is_far && !self.is_of_rows {
                 continue;
@@ -101,7 +104,13 @@ impl List<'_> {
     fn single_units(&mut self, is_clamped: bool) {
         for (axis, name) in AXES.into_iter().enumerate() {
             let sizes: Vec<f64> = self.draft.seen.iter().map(|seen| seen[axis].abs()).collect();
-            for (factor, unit) in [(1e3, "metres"), (25.4, "inches"), (1e-3, "micrometres")] {
+            for (factor, unit) in [
+                (1e3, "metres"),
+                (25.4, "inches"),
+                (10.0, "centimetres"),
+                (1e-3, "micrometres"),
+                (MIL, "thousandths of an inch (mil)"),
+            ] {
                 let is_far = || median(&sizes).is_some_and(|size| size > DISPLACEMENT);
                 if factor < 1.0 && is_clamped && !self.is_of_rows && !is_far() {
                     continue;
@@ -145,6 +154,7 @@ impl List<'_> {
 /// What to do with columns that are to be multiplied.
 fn times(columns: &str, factor: f64) -> String {
     match factor < 1.0 {
+        true if factor == MIL => format!("Multiply {columns} by {MIL}"),
         true => format!("Divide {columns} by {}", 1.0 / factor),
         false => format!("Multiply {columns} by {factor}"),
     }

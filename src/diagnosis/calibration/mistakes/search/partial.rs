@@ -10,6 +10,7 @@ use super::part::{Reference, most, within};
 use super::{FittedDraft, MistakeSearch, SearchStep};
 use crate::parallel::in_parallel;
 use crate::statistics::median;
+use crate::units::DEG;
 
 /// Windows of the rows that are fitted by themselves, as shares of them.
 const WINDOWS: [(f64, f64); 7] =
@@ -22,6 +23,9 @@ const UNLIKE: f64 = 0.4;
 /// A displacement in a clamp is distinguished from none, or from another one, where it is so many
 /// scatters large.
 const DISTINCT: f64 = 10.0;
+/// Least step of a joint's zero that somebody made: a coupling slips by half a milliradian or so by
+/// itself, rad (m of a prismatic joint).
+const LEAST_ZERO: f64 = 0.05 * DEG;
 /// Stretches that become states, of each fit.
 const MOST: usize = 3;
 
@@ -62,6 +66,10 @@ impl MistakeSearch<'_> {
                     let far: Vec<usize> =
                         (0..from.thin.len()).filter(|&at| lengths[k][at] > reference.far).collect();
                     let (by, _) = reference.zero(&from.thin, joint, &far)?;
+                    // what slips by itself is no mistake
+                    if by.abs() < LEAST_ZERO {
+                        return None;
+                    }
                     let change = DraftChange::Zero { joint, by };
                     let gains = reference.gains(&from.thin, &lengths[k], &from.thin.with(&change));
                     let (rows, gain) = most(&from.thin, &gains)?;

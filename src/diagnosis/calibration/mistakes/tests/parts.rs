@@ -54,6 +54,14 @@ fn rows_displaced_from_some_row_on() {
     assert_eq!(cure, "Move q3_deg 1 row up from pose 37 to pose 59");
 }
 
+/// A fiftieth of a degree slips by itself: that is an event, and left to the effects.
+#[test]
+fn nobody_makes_a_step_of_a_fiftieth_of_a_degree() {
+    let stepped_by = |degrees: f64| in_rows(&tracked(60, 7), 0..29, |q| q[1] += degrees * DEG);
+    assert_eq!(found(&stepped_by(0.022)), []);
+    assert_eq!(found(&stepped_by(0.1)), one("offset_mistake", "q2_deg, from pose 1 to pose 29"));
+}
+
 #[test]
 fn a_zero_that_stepped_is_no_drift_and_no_slip() {
     let wrong = in_rows(&tracked(60, 7), 38..60, |q| q[3] += 0.5 * DEG);

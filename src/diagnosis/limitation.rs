@@ -35,6 +35,8 @@ pub enum Limitation {
     /// Poses that follow one another have errors in common: so much of the variance, over so many
     /// poses.
     CorrelatedPoses(f64, f64),
+    /// The first pose, by its name, is so far off (m) as the way on which joints come moves others.
+    UnknownArrival(String, f64),
     /// The poses are too few to hold any out.
     NoFoldsOfPoses,
 }
@@ -108,6 +110,12 @@ impl fmt::Display for Limitation {
                  another order.",
                 significant(100.0 * share, 2),
                 significant(*length, 2),
+            ),
+            Limitation::UnknownArrival(pose, off) => write!(
+                f,
+                "{} is {} µm off, which what was found may have done: from where the arm came to it nobody knows.",
+                pose.replacen("pose", "Pose", 1),
+                significant(off / UM, 3)
             ),
             Limitation::NoFoldsOfPoses => f.write_str(
                 "The poses are too few to hold any out: no finding is confirmed by \

@@ -1,5 +1,6 @@
 //! What a campaign says about its calibration.
 
+pub mod arrival;
 pub mod beside;
 pub mod forward_model;
 pub mod hung;
@@ -8,6 +9,7 @@ pub mod memory;
 pub mod prepared;
 pub mod tails;
 
+use self::arrival::unknown_arrival;
 use self::beside::{calibrated_beside, unequal};
 use self::hung::{beside_masses, may_hide};
 use self::limits::{limits, noisy};
@@ -93,6 +95,7 @@ pub fn diagnose_calibrated<'c>(
         prepared = beside_hidden_masses(campaign, prepared, &look)?;
     }
     let mut diagnosis = infer(&prepared.model, &prepared.evidence);
+    let arrival = unknown_arrival(&prepared.model, &mut diagnosis);
     let Prepared { model, evidence, absorbed, not_testable, context, .. } = prepared;
     let next = next_measurements(&model, &context, &evidence, &diagnosis)?;
     for (finding, next) in diagnosis.findings.iter_mut().zip(next) {
@@ -101,6 +104,7 @@ pub fn diagnose_calibrated<'c>(
     let law = propose(&model, &diagnosis, &|change| sites(&context, change.len()));
     let mut limits = limits(&context, &model.calibration, &evidence);
     limits.extend(look.scatter.iter().flat_map(|noise| noisy(campaign, noise)));
+    limits.extend(arrival);
     let of_neighbours = evidence.correlated_noise;
     limits.extend(of_neighbours.map(|noise| Limitation::CorrelatedPoses(noise.share, noise.length)));
     let mut found = Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits, law };

@@ -27,7 +27,6 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use super::effects::JOINT_ANGLE;
 use super::model::{Configuration, Context};
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Calibration, MOST_SCATTER};
@@ -86,7 +85,6 @@ pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, contex
         residual.axpy(calibration.parameters[prior.parameter].value - prior.value, &own, 1.0);
         column.axpy(prior.sd, &own, 0.0);
     }
-    let background = with_arrival(background, context);
     let is_known = |k: &usize| priors.iter().any(|prior| prior.parameter == *k);
     let unknown: Vec<usize> = (0..jacobian.ncols()).filter(|k| !is_known(k)).collect();
     let evidence = Evidence {
@@ -110,20 +108,6 @@ pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, contex
         ..Evidence::new(residual)
     };
     nominal::with_numbers(evidence, campaign, calibration.mode, context)
-}
-
-/// Beside a background what play, friction or lag make of the first pose: from where the arm came
-/// to it nobody knows, Jⱼ·b of every joint.
-fn with_arrival(background: DMatrix<f64>, context: &Context) -> DMatrix<f64> {
-    let Some(there) = context.configurations.first() else { return background };
-    let first = background.ncols();
-    let joints = context.revolute();
-    let mut background = background.resize_horizontally(first + joints.len(), 0.0);
-    for (k, &j) in joints.iter().enumerate() {
-        let by = there.tip_jacobian[j] * (JOINT_ANGLE * context.scale[0]);
-        background.fixed_view_mut::<3, 1>(0, first + k).copy_from(&by);
-    }
-    background
 }
 
 /// The evidence of a calibration of which nothing is known beforehand: all that it is free to

@@ -11,6 +11,7 @@
 use nalgebra::{DVector, Vector3};
 
 use super::diagnose::CalibrationDiagnosis;
+use super::diagnose::beside::Loads;
 use super::effects::{Transfer, registry};
 use super::model::Context;
 use super::model::entry::Entry;
@@ -42,11 +43,10 @@ impl CalibrationDiagnosis<'_> {
             return Err(not("it has another robot".into(), hint));
         }
         let calibration = &model.calibration;
-        let found = model.terms.response(&self.diagnosis.hypothesis.terms);
-        let compensation = Compensation {
-            displaced: model.by_row(&found),
-            ..Compensation::new(campaign, calibration.mode)?
-        };
+        let found = Loads::of(model, &self.diagnosis.hypothesis.terms);
+        let plain = Compensation::new(campaign, calibration.mode)?;
+        let loaded = found.beside(plain, &calibration.setup.tool);
+        let compensation = Compensation { displaced: found.displaced, ..loaded };
         let free: Vec<_> = calibration.parameters.iter().map(|known| known.parameter).collect();
         let corrected = calibrate_from(
             campaign,

@@ -2,7 +2,7 @@
 
 use super::subject::Subject;
 use crate::diagnosis::Limitation;
-use crate::inference::{Diagnosis, Finding, Kind};
+use crate::inference::{Diagnosis, Finding, Kind, Location};
 use crate::units::{UM, significant};
 
 /// So many findings are said in full; more are named.
@@ -51,7 +51,9 @@ fn answer(subject: &Subject) -> String {
             ),
         };
     }
-    let said: Vec<String> = findings.iter().take(IN_FULL).map(|finding| sentence(subject, finding)).collect();
+    let said: Vec<String> = (findings.iter().take(IN_FULL))
+        .map(|finding| sentence(subject, finding) + &or_its_like(finding))
+        .collect();
     // what may as well not be there is not said first
     let mut words = match unconfirmed(subject) {
         Some(words) => format!("{words} {}", said.join(" ")),
@@ -247,6 +249,17 @@ pub fn sentence(subject: &Subject, finding: &Finding) -> String {
     format!("{description}{said}{more}; these {} cannot distinguish them.", subject.noun)
 }
 
+/// Which other clamp, socket or joint it may be: the first sentence names none as if it were sure.
+fn or_its_like(finding: &Finding) -> String {
+    let places = finding.other_places();
+    let is_named = |place: &Location| matches!(place, Location::Named(_));
+    if !is_named(&finding.location) || !places.iter().any(is_named) {
+        return String::new();
+    }
+    let named: Vec<String> = places.iter().filter(|place| is_named(place)).map(ToString::to_string).collect();
+    format!(" It may as well be {}.", named.join(", or "))
+}
+
 /// A finding without numbers.
 pub fn cause_at(finding: &Finding) -> String {
     (finding.effect.cause_at)(&finding.location)
@@ -255,4 +268,25 @@ pub fn cause_at(finding: &Finding) -> String {
 /// A length in µm with as many digits as are read.
 pub fn um(length: f64) -> String {
     significant(length / UM, if length.abs() < 0.995e-4 { 2 } else { 3 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inference::{Description, Rival, UNKNOWN};
+
+    #[test]
+    fn the_first_sentence_says_which_other_clamp_it_may_be() {
+        let at = |place: &str| Location::Named(place.into());
+        let found = |places: &[Location]| {
+            let mut finding =
+                Finding::without_terms(&UNKNOWN, at("clamp 2"), Vec::new(), Description::default());
+            finding.rivals =
+                places.iter().map(|place| Rival::without_term(&UNKNOWN, place.clone(), 1.0)).collect();
+            or_its_like(&finding)
+        };
+        assert_eq!(found(&[]), "");
+        assert_eq!(found(&[Location::Station(0.2)]), "");
+        assert_eq!(found(&[at("clamp 3"), at("clamp 1")]), " It may as well be clamp 3, or clamp 1.");
+    }
 }

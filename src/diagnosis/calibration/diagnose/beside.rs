@@ -9,6 +9,7 @@
 
 use nalgebra::{DVector, Vector3};
 
+use super::super::model::CalibrationModel;
 use super::super::model::context::{Context, plausible};
 use super::super::model::law::{Hung, Law};
 use super::prepared::Prepared;
@@ -31,6 +32,29 @@ pub struct Loads {
     pub displaced: Vec<Vector3<f64>>,
 }
 
+impl Loads {
+    /// Of what was found.
+    pub fn of(model: &CalibrationModel, terms: &[Term]) -> Loads {
+        let mass = |term: &Term| match model.law(term.candidate) {
+            Law::Hung(own) => Some((*own, term.values.first().copied().unwrap_or_default())),
+            _ => None,
+        };
+        let others: Vec<Term> = terms.iter().filter(|term| mass(term).is_none()).cloned().collect();
+        Loads {
+            hung: terms.iter().filter_map(mass).collect(),
+            displaced: model.by_row(&model.terms.response(&others)),
+        }
+    }
+
+    /// What a campaign compensates, with the masses among its loads.
+    pub fn beside(&self, plain: Compensation, tool: &Vector3<f64>) -> Compensation {
+        self.hung.iter().fold(plain, |loaded, (own, mass)| match own {
+            Hung::Tip => loaded.with_tip_heavier_by(*mass, tool),
+            Hung::Flange => loaded.with_payload_heavier_by(*mass, &Vector3::zeros()),
+        })
+    }
+}
+
 /// That robot, the rows as if nothing had been found; `None` where it is the same for all that its
 /// columns show.
 pub fn calibrated_beside<'c>(
@@ -42,15 +66,7 @@ pub fn calibrated_beside<'c>(
     if hypothesis.terms.is_empty() {
         return Ok(None);
     }
-    let mass = |term: &Term| match model.law(term.candidate) {
-        Law::Hung(own) => Some((*own, term.values.first().copied().unwrap_or_default())),
-        _ => None,
-    };
-    let others: Vec<Term> = hypothesis.terms.iter().filter(|term| mass(term).is_none()).cloned().collect();
-    let loads = Loads {
-        hung: hypothesis.terms.iter().filter_map(mass).collect(),
-        displaced: model.by_row(&model.terms.response(&others)),
-    };
+    let loads = Loads::of(model, &hypothesis.terms);
     let Some((beside, about)) = calibrated_with(prepared, &loads)? else { return Ok(None) };
     let recording = &model.campaign.measurements;
     let residual = |row: usize| -beside.deviations[row] * model.scale(row);
@@ -70,10 +86,7 @@ pub fn calibrated_with<'c>(
     let model = &prepared.model;
     let (campaign, known) = (model.campaign, &model.calibration);
     let plain = Compensation::new(campaign, known.mode)?;
-    let loaded = loads.hung.iter().fold(plain.clone(), |loaded, (own, mass)| match own {
-        Hung::Tip => loaded.with_tip_heavier_by(*mass, &known.setup.tool),
-        Hung::Flange => loaded.with_payload_heavier_by(*mass, &Vector3::zeros()),
-    });
+    let loaded = loads.beside(plain.clone(), &known.setup.tool);
     let compensation = Compensation { displaced: loads.displaced.clone(), ..loaded.clone() };
     let free: Vec<_> = known.parameters.iter().map(|estimate| estimate.parameter).collect();
     let start = known.start.clone();

@@ -150,8 +150,8 @@ fn a_readback_lag_is_no_backlash() {
     }
 }
 
-/// Of the first pose nobody knows where the arm came from: that a gear rests on the other side there
-/// is no outlier, two millimetres are one.
+/// Of the first pose nobody knows where the arm came from: that a gear rests on the other side
+/// there is no outlier, two millimetres are one.
 #[test]
 fn the_way_to_the_first_pose_is_unknown() {
     let campaign = clamps(30);
@@ -165,7 +165,7 @@ fn the_way_to_the_first_pose_is_unknown() {
         let shift = |row: usize| off[row] + if row == 0 { first } else { Vector3::zeros() };
         named(&recorded(&campaign, &shift, NOISE, 1))
     };
-    assert_eq!(named_with(Vector3::zeros()), ["backlash: joint 3, by approach"]);
+    assert_eq!(named_with(Vector3::zeros()), ["backlash: joint 3"]);
     let far = named_with(Vector3::new(2e-3, 0.0, 0.0));
     assert!(far.contains(&"outlier: pose 1".to_owned()) && far.len() == 2, "{far:?}");
 }

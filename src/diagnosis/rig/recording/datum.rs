@@ -8,7 +8,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::chronicle::{Chronicle, Motion};
-use super::rezeroed::is_zeroed_by_direction;
+use super::rezeroed::{Shown, is_zeroed_by_direction};
 use crate::diagnosis::rig::numbering::numbered;
 use crate::inference::RunName;
 use crate::rig::readings::{Axis, Direction, Driven, Phase, Reading, Readings};
@@ -220,7 +220,15 @@ fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {
     for ((datum, run), order) in data.iter_mut().zip(runs).zip(orders) {
         (datum.run, datum.order) = (run, order);
     }
-    if driven == Driven::Load && is_zeroed_by_direction(&data) {
+    let shown = |datum: &Datum| Shown {
+        line: (datum.direction.axis, datum.sensor()),
+        run: datum.run,
+        is_against: datum.direction.sign < 0,
+        order: datum.order,
+        load: datum.drive(),
+        measured: datum.measured,
+    };
+    if driven == Driven::Load && is_zeroed_by_direction(data.iter().map(shown)) {
         let runs = numbered(data.iter().map(|datum| (datum.run, datum.direction)));
         let mut directions: HashMap<usize, HashSet<i8>> = HashMap::new();
         for datum in &data {

@@ -1,20 +1,19 @@
 //! Whether the zero of a run holds for both directions of its axis.
 //!
 //! A rod that is pulled along y and then along −y hangs on another pulley in between. Whether the
-//! sensors were zeroed there too, no column says; the readings do. In each run, sensor and direction
-//! a straight line through the readings has an intercept a, and
+//! sensors were zeroed there too, no column says; the readings do. In each run, sensor and
+//! direction a straight line through the readings has an intercept a, and
 //!
 //! ```text
 //! d = a₊ − a₋,      z² = (d_k − d_m)²/(se²(d_k) + se²(d_m))
 //! ```
 //!
 //! compares it between two runs: whatever a rod, its play or its friction make of d, they make of
-//! it in every run, a zero of its own does not. A slip in one of three runs moves two of their three
-//! z², so a third of all is looked at: by chance alone that lies below 0.18.
+//! it in every run, a zero of its own does not. A slip in one of three runs moves two of their
+//! three z², so a third of all is looked at: by chance alone that lies below 0.18.
 
 use std::collections::BTreeMap;
 
-use super::datum::Datum;
 use crate::spatial::Axis;
 
 /// Share of the z² that lies farther out only where zeros were taken for each direction, and how
@@ -27,31 +26,45 @@ const FEWEST: usize = 6;
 /// Readings of an intercept that knows its error.
 const READINGS: usize = 3;
 
+/// Axis of the load, and the sensor by its channel and place.
+type Line = (Axis, (Axis, u64));
+
+/// One reading.
+pub(super) struct Shown {
+    pub line: Line,
+    pub run: usize,
+    /// True for a load against the axis.
+    pub is_against: bool,
+    pub order: usize,
+    /// N.
+    pub load: f64,
+    /// m.
+    pub measured: f64,
+}
+
 /// True where every direction of a run begins with a zero of its own.
-pub(super) fn is_zeroed_by_direction(data: &[Datum]) -> bool {
-    let mut sides: BTreeMap<(Axis, (Axis, u64), usize), [Side; 2]> = BTreeMap::new();
-    for datum in data {
-        let key = (datum.direction.axis, datum.sensor(), datum.run);
-        let side = usize::from(datum.direction.sign < 0);
-        sides.entry(key).or_default()[side].push(datum);
+pub(super) fn is_zeroed_by_direction(shown: impl Iterator<Item = Shown>) -> bool {
+    let mut sides: BTreeMap<(Line, usize), [Side; 2]> = BTreeMap::new();
+    for reading in shown {
+        sides.entry((reading.line, reading.run)).or_default()[usize::from(reading.is_against)].push(&reading);
     }
     if sides.values().any(|[up, down]| up.overlaps(down)) {
         return false;
     }
-    let mut intercepts: BTreeMap<(Axis, (Axis, u64)), Vec<[Intercept; 2]>> = BTreeMap::new();
-    for ((axis, sensor, _), [up, down]) in &sides {
+    let mut intercepts: BTreeMap<Line, Vec<[Intercept; 2]>> = BTreeMap::new();
+    for ((line, _), [up, down]) in &sides {
         if let (Some(up), Some(down)) = (up.intercept(), down.intercept()) {
-            intercepts.entry((*axis, *sensor)).or_default().push([up, down]);
+            intercepts.entry(*line).or_default().push([up, down]);
         }
     }
     let mut squares = Vec::new();
     for runs in intercepts.values() {
         let all = || runs.iter().flatten();
-        let freedom: f64 = all().map(|of| of.freedom).sum();
-        let variance = all().map(|of| of.square_sum).sum::<f64>() / freedom;
+        let freedom: f64 = all().map(|own| own.freedom).sum();
+        let variance = all().map(|own| own.square_sum).sum::<f64>() / freedom;
         let apart = |one: &[Intercept; 2], other: &[Intercept; 2]| {
             let d = |[up, down]: &[Intercept; 2]| up.value - down.value;
-            let factor: f64 = one.iter().chain(other).map(|of| of.variance_factor).sum();
+            let factor: f64 = one.iter().chain(other).map(|own| own.variance_factor).sum();
             (d(one) - d(other)).powi(2) / (variance * factor)
         };
         for (k, one) in runs.iter().enumerate() {
@@ -84,11 +97,11 @@ struct Intercept {
 }
 
 impl Side {
-    fn push(&mut self, datum: &Datum) {
-        self.load.push(datum.drive());
-        self.measured.push(datum.measured);
-        let (first, last) = self.span.unwrap_or((datum.order, datum.order));
-        self.span = Some((first.min(datum.order), last.max(datum.order)));
+    fn push(&mut self, reading: &Shown) {
+        self.load.push(reading.load);
+        self.measured.push(reading.measured);
+        let (first, last) = self.span.unwrap_or((reading.order, reading.order));
+        self.span = Some((first.min(reading.order), last.max(reading.order)));
     }
 
     /// True where the directions took turns, so that nothing was hung anew in between.
@@ -119,7 +132,7 @@ impl Side {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::rig::recording::datum;
+    use crate::diagnosis::rig::recording::datum::{self, Datum};
     use crate::rig::readings::Readings;
     use crate::statistics::Random;
 

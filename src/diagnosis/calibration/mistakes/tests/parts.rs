@@ -59,7 +59,7 @@ fn rows_displaced_from_some_row_on() {
 fn nobody_makes_a_step_of_a_fiftieth_of_a_degree() {
     let stepped_by = |degrees: f64| in_rows(&tracked(60, 7), 0..29, |q| q[1] += degrees * DEG);
     assert_eq!(found(&stepped_by(0.022)), []);
-    assert_eq!(found(&stepped_by(0.1)), one("offset_mistake", "q2_deg, from pose 1 to pose 29"));
+    assert_eq!(found(&stepped_by(0.5)), one("offset_mistake", "q2_deg, from pose 1 to pose 29"));
 }
 
 #[test]

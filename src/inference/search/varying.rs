@@ -57,7 +57,10 @@ impl Search<'_> {
                 let whitened = self.whitening.apply_columns(&columns);
                 let (log_probability, amplitudes) = self.with_effect(hypothesis, &linear, &whitened);
                 let odds = log_probability + prior - hypothesis.log_probability;
+                // what all of it has in common is a part of its size
                 let shape = columns * amplitudes;
+                let in_common = shape.dot(&own) / own.norm_squared();
+                let shape = shape - &own * in_common;
                 if odds < NAMED.ln()
                     || best.as_ref().is_some_and(|(most, _)| odds <= *most)
                     || rms(&shape) < LITTLE * rms(&own)

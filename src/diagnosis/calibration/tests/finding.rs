@@ -157,7 +157,7 @@ fn the_way_to_the_first_pose_is_unknown() {
     let campaign = clamps(30);
     let recording = &campaign.measurements;
     let play = |row: usize| match row {
-        0 => 2.0,
+        0 => 0.9,
         _ => 0.5 * (recording.joints(row)[2] - recording.joints(row - 1)[2]).signum(),
     };
     let off = turned(&campaign, |row, q| q[2] += 200e-6 * play(row));

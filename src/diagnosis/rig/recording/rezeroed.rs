@@ -131,7 +131,6 @@ impl Side {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::diagnosis::rig::recording::datum::{self, Datum};
     use crate::rig::readings::Readings;
     use crate::statistics::Random;

@@ -1,16 +1,12 @@
 //! What a display makes of a displacement that came by another one: play of a stylus, lag.
 
-use std::collections::HashMap;
-
 use super::entry::{
     Context, Entry, RigEffect, Usual, alternative, candidate, of_action, out_of_the_readings, parameter, size,
 };
 use super::places::measured_channels;
 use crate::diagnosis::rig::mechanics::action::Action;
 use crate::diagnosis::rig::mechanics::display::{Display, Follows};
-use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Effect, Kind, Location, Part, Reported, Variable, WrittenTo};
-use crate::rig::readings::Direction;
 use crate::spatial::Axis;
 
 /// Play of a stylus, a lever or a dial as a share of the largest reading.
@@ -78,18 +74,11 @@ pub static SENSOR_LAG: RigEffect = RigEffect {
     write: out_of_the_readings,
 };
 
-/// True where a load hung after a larger one: in loads that go down again, or in any order.
-fn has_less_after_more(data: &[Datum]) -> bool {
-    let mut before: HashMap<(usize, Direction), f64> = HashMap::new();
-    let falls = |d: &Datum| before.insert((d.run, d.direction), d.load).is_some_and(|before| d.load < before);
-    data.iter().any(|d| d.is_unloading()) || data.iter().any(falls)
-}
-
 /// All displays alike, and each by itself, in each form. Nothing where no load is taken off again:
 /// what is missing then is an offset.
 fn displays(context: &mut Context) -> Vec<Entry> {
     let data = context.data;
-    if data.iter().any(|d| d.imposed.is_some()) || !has_less_after_more(data) {
+    if data.iter().any(|d| d.imposed.is_some()) || !data.iter().any(|d| d.is_unloading()) {
         return Vec::new();
     }
     let largest = context.largest_reading();

@@ -163,31 +163,3 @@ fn play_of_the_displays_is_no_friction_and_friction_is_no_play() {
     };
     assert_eq!(named(&shown(&c, friction)).0, "friction");
 }
-
-/// Loads that were hung in any order go down too: what is left of the load before is a display that
-/// was read too soon, and no creep.
-#[test]
-fn a_display_is_late_in_any_order_of_the_loads() {
-    let rod = rod("");
-    let c = compliance(&rod);
-    let mut random = crate::statistics::Random::seeded(4, 6);
-    let mut text = "axis,load_n,trial,time_s,dy_um,dz_um\n".to_owned();
-    let mut time = 0.0;
-    for trial in 1..=3 {
-        for (axis, k) in [("y", 1), ("z", 2)] {
-            let mut before = 0.0;
-            for load in [9.0, 2.0, 12.0, 7.0, 4.0, 10.0, 3.0] {
-                time += 60.0;
-                let late = load - 0.05 * (load - before);
-                let [y, z] = [1, 2].map(|channel| c[(channel, k)] * late / UM + random.normal());
-                text += &format!("{axis},{load},{trial},{time},{y:.2},{z:.2}\n");
-                before = load;
-            }
-        }
-    }
-    let found = crate::diagnosis::rig::diagnose(&readings(&text), Some(&rod)).unwrap();
-    let names: Vec<&str> = found.diagnosis.findings.iter().map(|finding| finding.effect.name).collect();
-    assert_eq!(names, ["sensor_lag"]);
-    let share = found.diagnosis.findings[0].estimates[0].quantity();
-    assert!(share.low < 0.05 && 0.05 < share.high && share.high - share.low < 0.02, "{share:?}");
-}

@@ -88,7 +88,10 @@ impl Search<'_> {
         let variable = covariate.variable;
         Location::Curve {
             label: format!("{variable}, {cause}"),
-            follows: format!("makes what was named ({cause}) larger here than there, with the {variable}"),
+            follows: format!(
+                "makes what was named ({cause}) larger here than there, following the {}",
+                variable.title("recording")
+            ),
             along: Some(variable),
         }
     }

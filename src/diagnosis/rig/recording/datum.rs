@@ -220,6 +220,15 @@ fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {
     for ((datum, run), order) in data.iter_mut().zip(runs).zip(orders) {
         (datum.run, datum.order) = (run, order);
     }
+    if driven == Driven::Load {
+        split_directions(&mut data);
+    }
+    find_peaks(&mut data);
+    data
+}
+
+/// Makes a run of each direction of a run, where each has a zero of its own.
+fn split_directions(data: &mut [Datum]) {
     let shown = |datum: &Datum| Shown {
         line: (datum.direction.axis, datum.sensor()),
         run: datum.run,
@@ -228,19 +237,15 @@ fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {
         load: datum.drive(),
         measured: datum.measured,
     };
-    if driven == Driven::Load && is_zeroed_by_direction(data.iter().map(shown)) {
-        let runs = numbered(data.iter().map(|datum| (datum.run, datum.direction)));
-        let mut directions: HashMap<usize, HashSet<i8>> = HashMap::new();
-        for datum in &data {
-            directions.entry(datum.run).or_default().insert(datum.direction.sign);
-        }
-        for (datum, run) in data.iter_mut().zip(runs) {
-            datum.has_other_direction = directions[&datum.run].len() > 1;
-            datum.run = run;
-        }
+    if !is_zeroed_by_direction(data.iter().map(shown)) {
+        return;
     }
-    find_peaks(&mut data);
-    data
+    let known: HashSet<(usize, i8)> = data.iter().map(|d| (d.run, d.direction.sign)).collect();
+    let runs = numbered(data.iter().map(|datum| (datum.run, datum.direction)));
+    for (datum, run) in data.iter_mut().zip(runs) {
+        datum.has_other_direction = known.contains(&(datum.run, -datum.direction.sign));
+        datum.run = run;
+    }
 }
 
 /// Fills in from which load each one was reached by unloading. The largest load that is read once

@@ -131,6 +131,7 @@ impl Side {
 
 #[cfg(test)]
 mod tests {
+    use crate::diagnosis::rig::recording::columns::sensor_in_run;
     use crate::diagnosis::rig::recording::datum::{self, Datum};
     use crate::rig::readings::Readings;
     use crate::statistics::Random;
@@ -172,5 +173,15 @@ mod tests {
         assert_eq!(runs(&recording(6.0, 0.0, false)), 12, "a zero for each");
         assert_eq!(runs(&recording(0.0, 40.0, false)), 6, "a slip is none");
         assert_eq!(runs(&recording(6.0, 0.0, true)), 6, "nobody zeroes between two readings");
+    }
+
+    #[test]
+    fn the_zero_of_one_direction_is_that_of_its_rows() {
+        let place = |data: &[Datum]| {
+            let run: Vec<&Datum> = data.iter().filter(|d| d.run == 1).collect();
+            sensor_in_run(run[0], run[run.len() - 1]).to_string()
+        };
+        assert_eq!(place(&recording(0.0, 0.0, false)), "dx_um, axis z, trial 1");
+        assert_eq!(place(&recording(6.0, 0.0, false)), "dx_um, axis y, rows 5 to 8");
     }
 }

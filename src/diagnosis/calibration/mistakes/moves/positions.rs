@@ -153,9 +153,9 @@ impl List<'_> {
 
 /// What to do with columns that are to be multiplied.
 fn times(columns: &str, factor: f64) -> String {
-    match factor < 1.0 {
-        true if factor == MIL => format!("Multiply {columns} by {MIL}"),
-        true => format!("Divide {columns} by {}", 1.0 / factor),
+    let inverse = 1.0 / factor;
+    match factor < 1.0 && inverse.fract() == 0.0 {
+        true => format!("Divide {columns} by {inverse}"),
         false => format!("Multiply {columns} by {factor}"),
     }
 }

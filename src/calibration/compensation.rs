@@ -1,6 +1,6 @@
 //! Deflection of the rod at each pose (Eqs 12–14 and 19) and torques on the joints.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::campaign::{Campaign, Recording};
 use super::problem::Pass;
@@ -9,7 +9,7 @@ use crate::compliance::{Compliance, DEFAULT_ELEMENTS, StaticLaws, closed_form};
 use crate::error::{Error, Result};
 use crate::rig;
 use crate::robot::{Body, Kinematics, Loads, Robot, Setup};
-use crate::rod::RodLaw;
+use crate::rod::{Rod, RodLaw};
 use crate::spatial::times;
 use crate::statistics::Random;
 use crate::units::{STANDARD_GRAVITY, significant};
@@ -95,6 +95,24 @@ impl Compensation {
         let all = body.mass + mass;
         let body = Body { mass: all, centre: (body.centre * body.mass + point * mass) / all };
         Compensation { payload: Some(body).filter(|body| body.mass > 0.0), ..self.clone() }
+    }
+
+    /// The same where all of a rod but what is at its tip is heavier by so many times its mass;
+    /// lighter where that is negative.
+    ///
+    /// ```text
+    /// C^g + x·(C^g − m_tip·g·C^F)
+    /// ```
+    pub(crate) fn with_rod_heavier_by(&self, share: f64, rod: &Rod) -> Self {
+        let body = without_tip(rod);
+        let more = |compliance: &Compliance| Compliance {
+            gravity: compliance.gravity + by_own_weight(compliance, rod) * share,
+            ..*compliance
+        };
+        Compensation {
+            compliance: self.compliance.as_ref().map(more),
+            ..self.with_payload_heavier_by(share * body.mass, &body.centre)
+        }
     }
 
     /// Of a campaign in a mode.
@@ -246,6 +264,18 @@ impl Compensation {
             None => linear,
         }
     }
+}
+
+/// What a rod is as a body on the flange, without what is at its tip.
+pub(crate) fn without_tip(rod: &Rod) -> Body {
+    let bare = Rod { tip_mass: 0.0, ..rod.clone() };
+    Body { mass: bare.mass(), centre: bare.centre_of_mass() }
+}
+
+/// What of C^g is the weight of the rod itself, not of what is at its tip, m per g:
+/// C^g − m_tip·g·C^F.
+pub(crate) fn by_own_weight(compliance: &Compliance, rod: &Rod) -> Matrix3<f64> {
+    compliance.gravity - compliance.force * (rod.tip_mass * STANDARD_GRAVITY)
 }
 
 /// Largest torque that links and payload put on each joint over the workspace, N·m; at least 1e-9.

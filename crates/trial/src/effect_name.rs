@@ -70,6 +70,7 @@ effects! {
     JointShift = "joint_shift",
     PayloadMass = "payload_mass",
     ReadbackLag = "readback_lag",
+    RodMass = "rod_mass",
     RodStiffness = "rod_stiffness",
     SocketShift = "socket_shift",
     TipMass = "tip_mass",

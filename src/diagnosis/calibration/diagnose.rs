@@ -9,9 +9,11 @@ pub mod memory;
 pub mod prepared;
 pub mod tails;
 
+use nalgebra::DVector;
+
 use self::arrival::unknown_arrival;
 use self::beside::{calibrated_beside, unequal};
-use self::hung::{beside_masses, may_hide};
+use self::hung::{beside_hidden_masses, may_bend, may_hide, with_rivals};
 use self::limits::{limits, noisy};
 use self::memory::check_memory;
 use self::prepared::{FirstLook, Prepared};
@@ -82,25 +84,34 @@ pub fn diagnose_calibrated<'c>(
         let tails = if look.weights.is_none() { tails::weights(&prepared, &hypothesis, &left) } else { None };
         let moved_after = moved_after(&prepared, &hypothesis);
         let is_in_place = moved_after.iter().all(|row| look.moved_after.contains(row));
-        if about.is_none() && is_equal && tails.is_none() && is_in_place {
+        let is_read = is_read(&prepared, &hypothesis, &left);
+        if about.is_none() && is_equal && tails.is_none() && is_in_place && is_read {
             break;
         }
-        look = FirstLook { scatter: noise, weights: look.weights.or(tails), moved_after };
+        let left = Some(prepared.model.by_row(&left));
+        look = FirstLook { scatter: noise, weights: look.weights.or(tails), left, moved_after };
         let about = about.unwrap_or(prepared.about);
         let calibration = prepared.model.calibration;
         prepared = Prepared::about(campaign, calibration, about, &look)?;
         prepared.evidence.correlated_noise = correlated_noise;
     }
+    let mut rivals = Vec::new();
     if may_hide_masses {
-        prepared = beside_hidden_masses(campaign, prepared, &look)?;
+        (prepared, rivals) = beside_hidden_masses(campaign, prepared, &look)?;
     }
     let mut diagnosis = infer(&prepared.model, &prepared.evidence);
+    // what nothing explains may be what such a mass has left
+    if !may_hide_masses && diagnosis.discrepancy.is_some() && may_bend(&prepared) {
+        (prepared, rivals) = beside_hidden_masses(campaign, prepared, &look)?;
+        diagnosis = infer(&prepared.model, &prepared.evidence);
+    }
     let arrival = unknown_arrival(&prepared.model, &mut diagnosis);
     let Prepared { model, evidence, absorbed, not_testable, context, .. } = prepared;
     let next = next_measurements(&model, &context, &evidence, &diagnosis)?;
     for (finding, next) in diagnosis.findings.iter_mut().zip(next) {
         finding.next = next;
     }
+    with_rivals(&mut diagnosis, rivals);
     let law = propose(&model, &diagnosis, &|change| sites(&context, change.len()));
     let mut limits = limits(&context, &model.calibration, &evidence);
     limits.extend(look.scatter.iter().flat_map(|noise| noisy(campaign, noise)));
@@ -118,26 +129,6 @@ pub fn diagnose_calibrated<'c>(
     }
     complete(&mut found);
     Ok(found)
-}
-
-/// The same about the robot beside a mass that the calibration has hidden, where the poses are more
-/// probable there.
-fn beside_hidden_masses<'c>(
-    campaign: &'c Campaign,
-    prepared: Prepared<'c>,
-    look: &FirstLook,
-) -> Result<Prepared<'c>> {
-    let first = sketch(&prepared.model, &prepared.evidence);
-    let (mut best, mut log_probability) = (prepared, first.log_probability);
-    for about in beside_masses(&best, &first.hypothesis)? {
-        let mut other = Prepared::about(campaign, best.model.calibration.clone(), about, look)?;
-        let found = sketch(&other.model, &other.evidence);
-        other.evidence.correlated_noise = found.correlated_noise;
-        if found.log_probability > log_probability {
-            (best, log_probability) = (other, found.log_probability);
-        }
-    }
-    Ok(best)
 }
 
 /// What only the whole diagnosis knows of a finding: where it is written, and the whole error of a
@@ -165,9 +156,23 @@ fn moved_after(prepared: &Prepared, hypothesis: &Hypothesis) -> Vec<usize> {
     hypothesis.terms.iter().map(location).filter_map(Location::moved_after).collect()
 }
 
+/// True unless something is in proportion to the readings, and of their errors something else is
+/// known now.
+fn is_read(prepared: &Prepared, hypothesis: &Hypothesis, left: &DVector<f64>) -> bool {
+    let effect = |term: &Term| prepared.model.terms.candidates[term.candidate].effect;
+    let is_of_readings = |term: &Term| registry::is_of_readings(effect(term));
+    let context = &prepared.context;
+    !hypothesis.terms.iter().any(is_of_readings)
+        || context.misread_otherwise(&prepared.model.by_row(left)) < MISREAD * context.noise
+}
+
+/// Share of the noise that errors of the readings may change by.
+const MISREAD: f64 = 0.1;
+
 /// So many times a search begins anew about the robot that is left beside what was found, with the
 /// scatter that its clamps show then, with what poses count that are no farther out than the tails
-/// of the others, and with every row near to one after which something moved.
+/// of the others, with every row near to one after which something moved, with what is known of the
+/// errors of readings.
 const ROUNDS: usize = 2;
 
 /// Something that happened while the poses were recorded.

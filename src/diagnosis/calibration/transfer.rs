@@ -45,7 +45,7 @@ impl CalibrationDiagnosis<'_> {
         let calibration = &model.calibration;
         let found = Loads::of(model, &self.diagnosis.hypothesis.terms);
         let plain = Compensation::new(campaign, calibration.mode)?;
-        let loaded = found.beside(plain, &calibration.setup.tool);
+        let loaded = found.beside(plain, campaign.rod.as_ref(), &calibration.setup.tool);
         let compensation = Compensation { displaced: found.displaced, ..loaded };
         let free: Vec<_> = calibration.parameters.iter().map(|known| known.parameter).collect();
         let corrected = calibrate_from(

@@ -151,7 +151,7 @@ fn of_loads(list: &mut List<'_>) {
             let flange = list.flange(row).fixed_view::<3, 3>(0, 0).into_owned();
             flange * rod.per_gravity * flange.transpose() * site.gravity * 0.6
         });
-        list.add(EffectName::RodStiffness, Place::part("rod"), vec![own]);
+        list.add(EffectName::RodMass, Place::part("rod"), vec![own]);
     }
 }
 

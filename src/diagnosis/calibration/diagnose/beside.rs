@@ -13,9 +13,10 @@ use super::super::model::CalibrationModel;
 use super::super::model::context::{Context, plausible};
 use super::super::model::law::{Hung, Law};
 use super::prepared::Prepared;
-use crate::calibration::{Calibration, Compensation, Noise, Robust, calibrate_from};
+use crate::calibration::{Calibration, Compensation, Mode, Noise, Robust, calibrate_from};
 use crate::error::Result;
 use crate::inference::{Hypothesis, Term, rms};
+use crate::rod::Rod;
 use crate::units::URAD;
 
 /// A turn of a joint under its largest torque that changes columns, rad.
@@ -26,17 +27,26 @@ const LINEAR: f64 = 0.1;
 
 /// What acts on the rod and the arm beside what the campaign says.
 pub struct Loads {
-    /// Masses that nobody stated, kg.
+    /// Masses that nobody stated, kg, and how many times its mass a rod has too much.
     pub hung: Vec<(Hung, f64)>,
     /// What else displaces the tip at each row, m; empty where nothing does.
     pub displaced: Vec<Vector3<f64>>,
+}
+
+/// True where a calibration takes a mass into account as its candidate does: not on a rod that it
+/// assumes to be rigid, which bends under it all the same.
+pub fn is_load(model: &CalibrationModel, own: Hung) -> bool {
+    own == Hung::Flange || model.campaign.rod.is_none() || model.calibration.mode != Mode::None
 }
 
 impl Loads {
     /// Of what was found.
     pub fn of(model: &CalibrationModel, terms: &[Term]) -> Loads {
         let mass = |term: &Term| match model.law(term.candidate) {
-            Law::Hung(own) => Some((*own, term.values.first().copied().unwrap_or_default())),
+            Law::Hung(own) if is_load(model, *own) => {
+                let neutral = model.terms.candidates[term.candidate].parameters[0].neutral;
+                Some((*own, term.values.first().map_or(0.0, |value| value - neutral)))
+            }
             _ => None,
         };
         let others: Vec<Term> = terms.iter().filter(|term| mass(term).is_none()).cloned().collect();
@@ -47,10 +57,12 @@ impl Loads {
     }
 
     /// What a campaign compensates, with the masses among its loads.
-    pub fn beside(&self, plain: Compensation, tool: &Vector3<f64>) -> Compensation {
-        self.hung.iter().fold(plain, |loaded, (own, mass)| match own {
-            Hung::Tip => loaded.with_tip_heavier_by(*mass, tool),
-            Hung::Flange => loaded.with_payload_heavier_by(*mass, &Vector3::zeros()),
+    pub fn beside(&self, plain: Compensation, rod: Option<&Rod>, tool: &Vector3<f64>) -> Compensation {
+        self.hung.iter().fold(plain, |loaded, (own, more)| match (own, rod) {
+            (Hung::Tip, _) => loaded.with_tip_heavier_by(*more, tool),
+            (Hung::Flange, _) => loaded.with_payload_heavier_by(*more, &Vector3::zeros()),
+            (Hung::Rod, Some(rod)) => loaded.with_rod_heavier_by(*more, rod),
+            (Hung::Rod, None) => loaded,
         })
     }
 }
@@ -86,7 +98,7 @@ pub fn calibrated_with<'c>(
     let model = &prepared.model;
     let (campaign, known) = (model.campaign, &model.calibration);
     let plain = Compensation::new(campaign, known.mode)?;
-    let loaded = loads.beside(plain.clone(), &known.setup.tool);
+    let loaded = loads.beside(plain.clone(), campaign.rod.as_ref(), &known.setup.tool);
     let compensation = Compensation { displaced: loads.displaced.clone(), ..loaded.clone() };
     let free: Vec<_> = known.parameters.iter().map(|estimate| estimate.parameter).collect();
     let start = known.start.clone();

@@ -1,4 +1,4 @@
-//! A mass that nobody stated, where the calibration has hidden it.
+//! A mass that nobody stated, where the calibration has hidden it, or a rod heavier than its file.
 //!
 //! Half a kilogram at the tip is more torque on the wrist than rod and ball are, so that a
 //! calibration that knows of none turns its weight into soft drives, about which a mass at the tip
@@ -12,43 +12,108 @@
 //!
 //! and the search is made about that robot too.
 
-use super::beside::{Loads, calibrated_with};
-use super::prepared::Prepared;
+use super::beside::{Loads, calibrated_with, is_load};
+use super::prepared::{FirstLook, Prepared};
 use crate::calibration::Calibration;
+use crate::calibration::campaign::Campaign;
+use crate::diagnosis::calibration::effects::registry::pulls;
+use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::diagnosis::calibration::model::law::{Hung, Law};
 use crate::error::Result;
-use crate::inference::Hypothesis;
+use crate::inference::{APART, Diagnosis, Effect, Hypothesis, Location, Rival, Sketch, Term, sketch};
 
 /// Of more rows each calibration takes too long.
 const MOST_ROWS: usize = 2000;
-/// Masses at the tip that are tried first, kg, and at the flange.
-const TRIED: [(Hung, [f64; 4]); 2] =
-    [(Hung::Tip, [0.1, 0.3, 0.6, 1.0]), (Hung::Flange, [0.5, 1.5, 3.0, 6.0])];
+/// Masses at the tip that are tried first, kg, at the flange, and how many times its own mass a rod
+/// has too much: aluminium is a third of steel.
+const TRIED: [(Hung, &[f64]); 3] = [
+    (Hung::Tip, &[0.1, 0.3, 0.6, 1.0]),
+    (Hung::Flange, &[0.5, 1.5, 3.0, 6.0]),
+    (Hung::Rod, &[-0.6, -0.3, 0.5, 1.0, 2.0]),
+];
+/// A rod that weighs a tenth: nothing is lighter.
+const LIGHTEST: f64 = -0.9;
 /// Times that the steps about the best one are halved.
 const HALVED: usize = 4;
 
+/// True where a mass would bend rod or drives, and the poses are few enough to look for one.
+pub fn may_bend(prepared: &Prepared) -> bool {
+    prepared.model.campaign.measurements.len() <= MOST_ROWS && is_load(&prepared.model, Hung::Tip)
+}
+
 /// True where what was found bends rod or drives as a mass would.
 pub fn may_hide(prepared: &Prepared, hypothesis: &Hypothesis) -> bool {
-    prepared.model.campaign.measurements.len() <= MOST_ROWS && !acting_alike(prepared, hypothesis).is_empty()
+    may_bend(prepared) && loads(&prepared.model, hypothesis).next().is_some()
 }
 
-/// The laws of rod and masses that a hypothesis holds.
-fn acting_alike<'p>(prepared: &'p Prepared, hypothesis: &Hypothesis) -> Vec<&'p Law> {
-    let laws = hypothesis.terms.iter().map(|term| prepared.model.law(term.candidate));
-    laws.filter(|law| matches!(law, Law::Rod(_) | Law::Hung(_))).collect()
+/// The terms of a hypothesis that pull or bend.
+fn loads<'h>(model: &'h CalibrationModel, hypothesis: &'h Hypothesis) -> impl Iterator<Item = &'h Term> {
+    hypothesis.terms.iter().filter(|term| pulls(model.terms.candidates[term.candidate].effect))
 }
 
-/// Robots beside a mass that may be all that rod and masses of a hypothesis stand for, the rows as
-/// if nothing hung there.
-pub fn beside_masses<'c>(prepared: &Prepared<'c>, hypothesis: &Hypothesis) -> Result<Vec<Calibration<'c>>> {
+/// The same about the robot beside a mass that the calibration has hidden, where the poses are more
+/// probable there; and what is found about the others that are about as probable.
+pub fn beside_hidden_masses<'c>(
+    campaign: &'c Campaign,
+    prepared: Prepared<'c>,
+    look: &FirstLook,
+) -> Result<(Prepared<'c>, Vec<Rival>)> {
+    let first = sketch(&prepared.model, &prepared.evidence);
+    let robots = beside_masses(&prepared)?;
+    let mut found = vec![(prepared, first)];
+    for (beside, about) in robots {
+        let left = Some(beside.deviations.iter().map(|deviation| -deviation).collect());
+        let look = FirstLook { left, ..look.clone() };
+        let mut other = Prepared::about(campaign, found[0].0.model.calibration.clone(), about, &look)?;
+        let sketched = sketch(&other.model, &other.evidence);
+        other.evidence.correlated_noise = sketched.correlated_noise;
+        found.push((other, sketched));
+    }
+    let probability = |k: usize| found[k].1.log_probability;
+    let best = (0..found.len()).max_by(|a, b| probability(*a).total_cmp(&probability(*b))).unwrap_or(0);
+    let (prepared, chosen) = found.swap_remove(best);
+    let own = named(&prepared, &chosen);
+    let near = found.iter().map(|(other, sketched)| {
+        let odds = (chosen.log_probability - sketched.log_probability).exp();
+        named(other, sketched).into_iter().map(move |(effect, location)| (effect, location, odds))
+    });
+    let is_rival = |(effect, location, odds): &(&'static Effect, Location, f64)| {
+        *odds < APART && !own.iter().any(|known| known.0 == *effect && known.1 == *location)
+    };
+    let rivals = near.flatten().filter(is_rival);
+    let rivals = rivals.map(|(effect, location, odds)| Rival::without_term(effect, location, odds)).collect();
+    Ok((prepared, rivals))
+}
+
+/// What pulls or bends of what was found about a robot.
+fn named(prepared: &Prepared, found: &Sketch) -> Vec<(&'static Effect, Location)> {
+    let candidates = &prepared.model.terms.candidates;
+    let candidate = |term: &Term| &candidates[term.candidate];
+    let terms = loads(&prepared.model, &found.hypothesis).map(candidate);
+    terms.map(|candidate| (candidate.effect, candidate.location.clone())).collect()
+}
+
+/// Has what pulls or bends in a diagnosis stand beside what was found about other robots.
+pub fn with_rivals(diagnosis: &mut Diagnosis, rivals: Vec<Rival>) {
+    let Some(finding) = diagnosis.findings.iter_mut().find(|finding| pulls(finding.effect)) else { return };
+    for rival in rivals {
+        let is_it = |known: &Rival| known.effect == rival.effect && known.location == rival.location;
+        if !finding.rivals.iter().any(is_it) {
+            finding.rivals.push(rival);
+        }
+    }
+    finding.rivals.sort_by(|a, b| a.odds.total_cmp(&b.odds));
+}
+
+/// Robots beside a mass that may be all that rod and masses of a hypothesis stand for, as in
+/// [`calibrated_with`].
+fn beside_masses<'c>(prepared: &Prepared<'c>) -> Result<Vec<(Calibration<'c>, Calibration<'c>)>> {
     let model = &prepared.model;
-    let law = |candidate: usize| model.law(candidate);
-    let known = acting_alike(prepared, hypothesis);
-    let is_found = |own: Hung| known[..] == [&Law::Hung(own)];
-    let is_possible = |own: Hung| (0..model.terms.candidates.len()).any(|k| *law(k) == Law::Hung(own));
+    let count = model.terms.candidates.len();
+    let is_possible = |own: Hung| (0..count).any(|candidate| *model.law(candidate) == Law::Hung(own));
     let mut found = Vec::new();
     for (own, masses) in TRIED {
-        if is_found(own) || !is_possible(own) {
+        if !is_possible(own) {
             continue;
         }
         let with =
@@ -59,14 +124,18 @@ pub fn beside_masses<'c>(prepared: &Prepared<'c>, hypothesis: &Hypothesis) -> Re
         };
         let mut best = (0.0, f64::INFINITY);
         for mass in masses {
-            let left = left(mass)?;
+            let left = left(*mass)?;
             if left < best.1 {
-                best = (mass, left);
+                best = (*mass, left);
             }
+        }
+        // no calibration with any of them has converged
+        if best.1.is_infinite() {
+            continue;
         }
         let mut step = best.0 / 2.0;
         for _ in 0..HALVED {
-            for mass in [best.0 - step, best.0 + step] {
+            for mass in [best.0 - step, best.0 + step].map(|mass| mass.max(LIGHTEST)) {
                 let left = left(mass)?;
                 if left < best.1 {
                     best = (mass, left);
@@ -74,7 +143,7 @@ pub fn beside_masses<'c>(prepared: &Prepared<'c>, hypothesis: &Hypothesis) -> Re
             }
             step /= 2.0;
         }
-        found.extend(with(best.0)?.map(|(_, about)| about));
+        found.extend(with(best.0)?);
     }
     Ok(found)
 }

@@ -1,5 +1,7 @@
 //! A calibration as the engine gets it: the model with all its effects, and the evidence.
 
+use nalgebra::Vector3;
+
 use super::super::effects::registry;
 use super::super::evidence;
 use super::super::model::torque_uncertainty::TorqueUncertainty;
@@ -24,12 +26,14 @@ pub struct Prepared<'c> {
 }
 
 /// What a first look at the residuals has shown.
-#[derive(Default)]
+#[derive(Default, Clone)]
 pub struct FirstLook {
     /// How groups scatter, where they do so unequally.
     pub scatter: Option<Noise>,
     /// What each row counts, where tails are heavy.
     pub weights: Option<Vec<f64>>,
+    /// What is left of each row, in {W}, m; `None` where that is what the calibration leaves.
+    pub left: Option<Vec<Vector3<f64>>>,
     /// Rows, from 0, after which something has moved.
     pub moved_after: Vec<usize>,
 }
@@ -54,6 +58,10 @@ impl<'c> Prepared<'c> {
         };
         let context = match &look.weights {
             Some(weights) => context.weighted(weights),
+            None => context,
+        };
+        let context = match &look.left {
+            Some(left) => context.misread(left),
             None => context,
         };
         let context = context.moved_after(&look.moved_after);

@@ -9,7 +9,6 @@ use super::{
     CalibrationEffect, Context, Entry, Transfer, first, lack, no_event, out_of_the_points, own_parameters,
     single, size,
 };
-use crate::calibration::campaign::Targets;
 use crate::inference::{Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
 
 /// Error of a contact force, N.
@@ -100,7 +99,7 @@ pub static CONTACT_SPRING: CalibrationEffect = CalibrationEffect {
         name: "contact_spring",
         kind: Kind::Physics,
         summary: "the contact force changes with the ball's displacement",
-        formula: "R·C^F·Rᵀ·k·u + yield(tip, k·u): u the recorded displacement in the device frame, so that \
+        formula: "R·C^F·Rᵀ·k·u + yield(tip, k·u): u the displacement in the device frame, so that \
                   the force is F₀ + k·u; k < 0 pushes back",
         prior: "0.1 N/mm: springs of plunger gauges have 0.05 to 0.3",
         parameters: &[(&["n_per_mm"], "k: change of the force per displacement")],
@@ -122,17 +121,15 @@ pub static CONTACT_SPRING: CalibrationEffect = CalibrationEffect {
 };
 
 fn springs(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
-    let Targets::Points(points) = &context.recording.targets else { return Vec::new() };
+    if context.has_sockets() {
+        return Vec::new();
+    }
     if !is_of_clamps(context) || !gives_way(context) {
         let reason = "there are no clamps, or neither a rod nor a joint of known compliance";
         lacks.push(lack(&CONTACT_SPRING, reason));
         return Vec::new();
     }
-    // poses that nobody measured have no displacement
-    let displacement = |row: usize| {
-        let device = context.recording.device(row);
-        points.get(row).map(|point| point - device.origin).unwrap_or_default()
-    };
+    let displacement = |row: usize| context.recording.device(row).rotation * context.displacement(row);
     at_clamps(context, |location, is_there| {
         let push = |row: usize| is_there(context.recording.rows[row].group).then(|| displacement(row));
         let column = context.column(|row, there| pushed(context, there, push(row)));

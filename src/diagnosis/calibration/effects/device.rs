@@ -9,7 +9,6 @@ use super::super::model::CalibrationModel;
 use super::super::model::entry::linear;
 use super::contact::{at_clamps, is_of_clamps};
 use super::{CalibrationEffect, Context, Entry, Transfer, lack, no_event, out_of_the_points, single};
-use crate::calibration::campaign::{Recording, Targets};
 use crate::inference::{
     Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Parameter, Quantity, Reported,
     WrittenTo,
@@ -34,7 +33,7 @@ pub static SENSOR_SCALE: CalibrationEffect = CalibrationEffect {
         name: "sensor_scale",
         kind: Kind::Physics,
         summary: "a clamp's displacement sensors show too much, too little or cross-talk",
-        formula: "R_c·(I − S⁻¹)·u: u the recorded displacement in the device frame, R_c that frame in {W}; \
+        formula: "R_c·(I − S⁻¹)·u: u the displacement in the device frame, R_c that frame in {W}; \
                   S one factor along an axis, of one clamp or all, or 3×3 of all (rotation of the \
                   device included)",
         prior: "3 %: a displacement sensor that was not calibrated in place, or whose axis is off by 1.7°",
@@ -62,17 +61,6 @@ pub static SENSOR_SCALE: CalibrationEffect = CalibrationEffect {
     event: no_event,
 };
 
-/// The recorded displacement of a row in the frame of its device, m; none of poses that nobody
-/// measured.
-pub(in crate::diagnosis::calibration) fn displacement(recording: &Recording, row: usize) -> Vector3<f64> {
-    match &recording.targets {
-        Targets::Points(points) => {
-            points.get(row).map(|point| recording.device(row).inverse().point(point)).unwrap_or_default()
-        }
-        Targets::Sockets(_) => Vector3::zeros(),
-    }
-}
-
 fn devices(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     if !is_of_clamps(context) {
         lacks.push(lack(&SENSOR_SCALE, "there are no clamps"));
@@ -82,7 +70,7 @@ fn devices(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     // what is shown along one axis and is none, per displacement that is shown along another
     let column = |shown: usize, along: usize, is_there: &dyn Fn(usize) -> bool| {
         context.column(|row, _| match is_there(recording.rows[row].group) {
-            true => -recording.device(row).rotation.column(shown) * displacement(recording, row)[along],
+            true => -recording.device(row).rotation.column(shown) * context.displacement(row)[along],
             false => Vector3::zeros(),
         })
     };

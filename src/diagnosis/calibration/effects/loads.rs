@@ -24,6 +24,8 @@ const SOFTNESS: f64 = 0.27;
 pub(in crate::diagnosis::calibration) const FORGOTTEN_AT_TIP: f64 = 0.05;
 /// Mass at the flange that was forgotten, kg.
 const FORGOTTEN_AT_FLANGE: f64 = 0.5;
+/// Share by which a rod is heavier than its file says: a tube of another wall, another alloy.
+const HEAVIER: f64 = 0.3;
 /// How far from level a robot stands that nobody has levelled, rad.
 const LEVEL: f64 = 0.5 * DEG;
 
@@ -73,7 +75,6 @@ fn rods(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
             match load {
                 RodLoad::All => by_contact + by_weight,
                 RodLoad::Contact => by_contact,
-                RodLoad::Weight => by_weight,
             }
         });
         let location = match load.description() {
@@ -82,7 +83,7 @@ fn rods(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         };
         single(&ROD_STIFFNESS, location, factor, column).by(Law::Rod(load))
     };
-    [RodLoad::All, RodLoad::Contact, RodLoad::Weight].map(under).into()
+    [RodLoad::All, RodLoad::Contact].map(under).into()
 }
 
 /// The model counts by how much more a rod bends, which its columns are linear in; people count its
@@ -134,6 +135,50 @@ pub(super) fn gives_way(context: &Context) -> bool {
 
 fn joints_give_way(context: &Context) -> bool {
     context.configurations.first().is_some_and(|there| there.compliance.iter().any(|&c| c != 0.0))
+}
+
+/// A rod that is heavier than its file says.
+pub static ROD_MASS: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "rod_mass",
+        kind: Kind::Physics,
+        summary: "the rod is heavier or lighter than its file says",
+        formula: "(x − 1)·(R·C^g_r·Rᵀ·g + yield(centre, m_r·g)): x is the rod's mass over that of its file; C^g_r, \
+                  m_r and centre are the rod's without what is at its tip",
+        prior: "30 %: a tube of another wall, another alloy; its density alone is known to 1 %",
+        parameters: &[(&["factor"], "x: mass over that of the rod file, without what is at the tip")],
+        needs: "a rod in the campaign",
+        cause: "a wall, a density or a part that is not in the file",
+        cause_at: |_| "a rod of another mass".into(),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: Some("Weigh the rod."),
+    },
+    candidates: rod_masses,
+    estimates: own_parameters,
+    observed: |finding, _| {
+        format!("The rod weighs {} times what its file says", first(finding).with_unit(""))
+    },
+    write: out_of_the_points,
+    transfer: Transfer::Candidate,
+    event: no_event,
+};
+
+fn rod_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let Some(rod) = &context.own_weight else {
+        lacks.push(lack(&ROD_MASS, "the campaign names no rod"));
+        return Vec::new();
+    };
+    let column = context.column(|_, there| {
+        let centre = there.flange.point(&rod.body.centre);
+        let weight = there.gravity * rod.body.mass;
+        there.in_world(&rod.compliance) * there.gravity + there.joint_deflection(&centre, &weight)
+    });
+    let mut factor = linear("factor", HEAVIER);
+    factor.neutral = 1.0;
+    factor.bounds = (0.0, 10.0);
+    vec![single(&ROD_MASS, Location::Part(Part::Rod), factor, column).by(Law::Hung(Hung::Rod))]
 }
 
 /// A mass at the tip that was forgotten.

@@ -8,7 +8,7 @@ use super::events::{JOINT_SHIFT, OUTLIER};
 use super::fixture::{CLAMP_POSE, CLAMP_SHIFT, SOCKET_SHIFT};
 use super::gear::TRANSMISSION_ERROR;
 use super::joints::{GRAVITY_TILT, JOINT_COMPLIANCE, JOINT_NONLINEAR_STIFFNESS, LINK_FLEXIBILITY};
-use super::loads::{GRAVITY_DIRECTION, PAYLOAD_MASS, ROD_STIFFNESS, TIP_MASS};
+use super::loads::{GRAVITY_DIRECTION, PAYLOAD_MASS, ROD_MASS, ROD_STIFFNESS, TIP_MASS};
 use super::mounting::{BASE_SHIFT, TOOL_SHIFT};
 use super::play::{BACKLASH, JOINT_FRICTION};
 use super::procedure::{READBACK_LAG, THERMAL_DRIFT};
@@ -16,9 +16,10 @@ use super::{CalibrationEffect, Context, Entry, mistakes};
 use crate::inference::{Effect, NotTestable};
 
 /// All of them, as they are listed wherever they are.
-pub static ALL: [&CalibrationEffect; 25] = [
+pub static ALL: [&CalibrationEffect; 26] = [
     &ROD_STIFFNESS,
     &TIP_MASS,
+    &ROD_MASS,
     &PAYLOAD_MASS,
     &CONTACT_FORCE_VARIATION,
     &CONTACT_SPRING,
@@ -63,13 +64,30 @@ pub static MISTAKES: [&Effect; 13] = [
 ];
 
 /// What pulls on the arm as a whole: preferred to what a single joint does.
-static OF_LOADS: [&CalibrationEffect; 6] =
-    [&ROD_STIFFNESS, &TIP_MASS, &PAYLOAD_MASS, &CONTACT_FORCE_VARIATION, &GRAVITY_DIRECTION, &GRAVITY_TILT];
+static OF_LOADS: [&CalibrationEffect; 7] = [
+    &ROD_STIFFNESS,
+    &TIP_MASS,
+    &ROD_MASS,
+    &PAYLOAD_MASS,
+    &CONTACT_FORCE_VARIATION,
+    &GRAVITY_DIRECTION,
+    &GRAVITY_TILT,
+];
 /// What follows the torque of a joint.
 static OF_TORQUE: [&CalibrationEffect; 4] =
     [&JOINT_COMPLIANCE, &JOINT_NONLINEAR_STIFFNESS, &BACKLASH, &LINK_FLEXIBILITY];
 /// What follows the motion of a joint.
 static OF_MOTION: [&CalibrationEffect; 3] = [&BACKLASH, &JOINT_FRICTION, &ENCODER_SCALE];
+
+/// True for what pulls on the arm as a whole.
+pub(in crate::diagnosis::calibration) fn pulls(effect: &Effect) -> bool {
+    OF_LOADS.iter().any(|known| known.effect == *effect)
+}
+
+/// True for what is in proportion to what the devices of clamps read.
+pub(in crate::diagnosis::calibration) fn is_of_readings(effect: &Effect) -> bool {
+    [&SENSOR_SCALE, &CONTACT_SPRING].iter().any(|known| known.effect == *effect)
+}
 
 /// The record of an effect; `None` for what nobody has named.
 pub(in crate::diagnosis::calibration) fn record(effect: &Effect) -> Option<&'static CalibrationEffect> {

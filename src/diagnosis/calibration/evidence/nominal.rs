@@ -4,7 +4,7 @@
 //! ```text
 //! mass of link k      Σ_{j≤k} Jⱼ·cⱼ·zⱼ·((p_k − oⱼ) × g)·u       u a share of its mass
 //! its centre          Σ_{j≤k} Jⱼ·cⱼ·zⱼ·(e × g)·m_k·u            e an axis of the link, u a share of its distance
-//! a number of the rod R·(∂C^F·F + ∂C^g·g)·u                     by the rod file's standard uncertainties
+//! a number of the rod (R·(∂C^F·F + ∂C^g·g) + ∂yield(weight))·u   by the rod file's standard uncertainties
 //! place of a clamp    −e·u                                      where the campaign states u
 //! ```
 
@@ -99,12 +99,18 @@ fn of_rod(campaign: &Campaign, mode: Mode, context: &Context) -> Vec<(NominalPar
     };
     let force = campaign.contact_force.unwrap_or_default();
     let of_number = |known: Nominal| {
-        let other = model(&rod.with(&known.number, known.value + known.standard_uncertainty))?;
+        let other_rod = rod.with(&known.number, known.value + known.standard_uncertainty);
+        let other = model(&other_rod)?;
         let by_force = (other.force - nominal.force) / known.standard_uncertainty;
         let by_weight = (other.gravity - nominal.gravity) / known.standard_uncertainty / STANDARD_GRAVITY;
         let column = context.column(|row, there| {
             let force = context.recording.device(row).rotation * force;
-            there.in_world(&by_force) * force + there.in_world(&by_weight) * there.gravity
+            let [weight, other_weight] = [rod, &other_rod].map(|rod| {
+                let centre = there.flange.point(&rod.centre_of_mass());
+                there.joint_deflection(&centre, &(there.gravity * rod.mass()))
+            });
+            let by_drives = (other_weight - weight) / known.standard_uncertainty;
+            there.in_world(&by_force) * force + there.in_world(&by_weight) * there.gravity + by_drives
         });
         let (unit, si, value) = known.for_people();
         let number = NominalParameter {

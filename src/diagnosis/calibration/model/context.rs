@@ -7,10 +7,12 @@ use super::configuration::Configuration;
 use super::entry::Column;
 use super::patterns::Patterns;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
-use crate::calibration::{Calibration, Compensation, Mode, Robust, plausible_compliances};
+use crate::calibration::{
+    Calibration, Compensation, Mode, Robust, by_own_weight, plausible_compliances, without_tip,
+};
 use crate::error::Result;
 use crate::inference::Pattern;
-use crate::robot::{Effect, Motion, Setup};
+use crate::robot::{Body, Effect, Motion, Setup};
 
 /// All that effects need to know of a campaign and its calibration.
 pub struct Context<'a> {
@@ -21,12 +23,14 @@ pub struct Context<'a> {
     pub configurations: Vec<Configuration>,
     /// Directions that many columns are multiples of.
     pub patterns: Patterns,
-    /// What each row counts, relative to the others: pooled noise over the noise of its group.
+    /// What each row counts, relative to the others: mean noise over the noise of its group.
     pub scale: Vec<f64>,
     /// Pooled noise of a coordinate, m.
     pub noise: f64,
     /// How far each row is off, in noises of its group.
     off: Vec<f64>,
+    /// What of each recorded point is error, as far as is known, in {W}, m.
+    misread: Vec<Vector3<f64>>,
     /// Motion of every joint.
     pub motions: Vec<Motion>,
     /// Does the robot's file have masses? Without them the torques are those of rod and contact
@@ -41,6 +45,8 @@ pub struct Context<'a> {
     /// Deflections in {W} by the rod's model, m, by contact force and by gravity; empty without a
     /// rod.
     pub deflection: Vec<[Vector3<f64>; 2]>,
+    /// The rod's own weight, without what is at its tip; `None` without a rod.
+    pub own_weight: Option<OwnWeight>,
     /// Masses that are modelled at the tip, and at the flange with what hangs on it, kg.
     pub modelled_mass: (f64, f64),
     /// Compliance beyond which the drive of each joint is not of its class, rad/(N·m).
@@ -50,6 +56,14 @@ pub struct Context<'a> {
     pub accounted: f64,
     /// Rows, from 0, after which a first look has seen something move.
     pub moved_after: Vec<usize>,
+}
+
+/// What a rod's own weight does.
+pub struct OwnWeight {
+    /// Deflection by it in {T} per acceleration of gravity, m/(m/s²).
+    pub compliance: Matrix3<f64>,
+    /// As a body on the flange.
+    pub body: Body,
 }
 
 impl<'a> Context<'a> {
@@ -62,14 +76,18 @@ impl<'a> Context<'a> {
         Ok(Context {
             noise,
             off: calibration.deviations.iter().map(|deviation| deviation.norm() / noise).collect(),
+            misread: calibration.deviations.iter().map(|deviation| -deviation).collect(),
             ..Context::still(campaign, calibration.mode, &calibration.setup, &calibration.deflections)?
         })
     }
 
-    /// The same where groups scatter by so much, m.
+    /// The same where groups scatter by so much, m. Rows are scaled to the geometric mean over all,
+    /// so that the probability of a recording is the same density about every robot.
     pub fn scattered(mut self, of_group: &[f64]) -> Self {
-        self.scale = self.recording.rows.iter().map(|row| self.noise / of_group[row.group]).collect();
-        self.off.iter_mut().zip(&self.scale).for_each(|(off, scale)| *off *= scale);
+        let own: Vec<f64> = self.recording.rows.iter().map(|row| of_group[row.group]).collect();
+        let mean = (own.iter().map(|sd| sd.ln()).sum::<f64>() / own.len().max(1) as f64).exp();
+        self.scale = own.iter().map(|own| mean / own).collect();
+        self.off.iter_mut().zip(&own).for_each(|(off, own)| *off *= self.noise / own);
         self
     }
 
@@ -80,6 +98,11 @@ impl<'a> Context<'a> {
             self.off[row] *= weight.sqrt();
         }
         self
+    }
+
+    /// The same where a first look has left so much of each row, m in {W}.
+    pub fn misread(self, left: &[Vector3<f64>]) -> Self {
+        Context { misread: left.to_vec(), ..self }
     }
 
     /// The same where a first look has seen something move after these rows.
@@ -117,12 +140,17 @@ impl<'a> Context<'a> {
                 [configuration.in_world(&rod.force) * force, configuration.in_world(&rod.gravity) * per_g]
             })
         };
+        let own_weight = campaign.rod.as_ref().zip(rod.as_ref()).map(|(file, rod)| OwnWeight {
+            compliance: by_own_weight(rod, file) / crate::units::STANDARD_GRAVITY,
+            body: without_tip(file),
+        });
         Ok(Context {
             recording,
             since: recording,
             scale: vec![1.0; recording.len()],
             noise: 0.0,
             off: vec![0.0; recording.len()],
+            misread: vec![Vector3::zeros(); recording.len()],
             has_masses: campaign.robot.has_masses(),
             effects: &campaign.robot.effects,
             motions: campaign.robot.joints.iter().map(|joint| joint.motion).collect(),
@@ -132,6 +160,7 @@ impl<'a> Context<'a> {
                 .map_or_else(Matrix3::zeros, |rod| rod.gravity / crate::units::STANDARD_GRAVITY),
             deflection: configurations.iter().enumerate().filter_map(deflection).collect(),
             accounted,
+            own_weight,
             moved_after: Vec::new(),
             softest,
             modelled_mass: modelled_mass(campaign),
@@ -189,6 +218,29 @@ impl<'a> Context<'a> {
         angle: impl Fn(usize, &Configuration) -> f64,
     ) -> Column {
         self.along_from(&self.patterns.joint[joint], first, angle)
+    }
+
+    /// The displacement of the ball in the frame of its device, m; none of poses that nobody
+    /// measured.
+    ///
+    /// Recorded less what is known of its error. A column of the recorded one itself would have
+    /// that error in common with the residual: ε²/(u² + ε²), 2 % of 0.15 mm, shows as a scale.
+    pub fn displacement(&self, row: usize) -> Vector3<f64> {
+        match &self.recording.targets {
+            Targets::Points(points) => points
+                .get(row)
+                .map(|point| self.recording.device(row).inverse().point(&(point - self.misread[row])))
+                .unwrap_or_default(),
+            Targets::Sockets(_) => Vector3::zeros(),
+        }
+    }
+
+    /// How far `left` is from what is known of the errors of the points: root mean square of a
+    /// coordinate, m.
+    pub fn misread_otherwise(&self, left: &[Vector3<f64>]) -> f64 {
+        let squares: f64 =
+            self.misread.iter().zip(left).map(|(one, other)| (one - other).norm_squared()).sum();
+        (squares / (3 * left.len()).max(1) as f64).sqrt()
     }
 
     /// How far a row is off, in noises of its group.

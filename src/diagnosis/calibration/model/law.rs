@@ -25,7 +25,8 @@ pub enum Law {
     MassesUnknown(Vec<Option<usize>>),
     /// A rod of another stiffness.
     Rod(RodLoad),
-    /// A mass that nobody stated: what it does to the joints depends on how compliant they are.
+    /// A mass that nobody stated, or a rod of another one: what it does to the joints depends on
+    /// how compliant they are.
     Hung(Hung),
     /// Drift.
     Drift(Course, Frame),
@@ -54,6 +55,8 @@ pub enum Hung {
     Tip,
     /// At the flange.
     Flange,
+    /// Along the rod: as many times the rod's own mass, tip excepted, as there are too many.
+    Rod,
 }
 
 /// The load under which a rod's stiffness is another one.
@@ -64,8 +67,6 @@ pub enum RodLoad {
     All,
     /// The contact force.
     Contact,
-    /// The weight of rod and ball.
-    Weight,
 }
 
 /// What a drift follows.
@@ -144,12 +145,11 @@ impl Law {
 }
 
 impl RodLoad {
-    /// `under its weight`; nothing for all loads.
+    /// `under the contact force`; nothing for all loads.
     pub fn description(self) -> Option<&'static str> {
         match self {
             RodLoad::All => None,
             RodLoad::Contact => Some("under the contact force"),
-            RodLoad::Weight => Some("under its weight"),
         }
     }
 }

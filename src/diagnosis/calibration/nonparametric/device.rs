@@ -7,7 +7,6 @@
 //! of all clamps, for the same sensors go from clamp to clamp more often than not.
 
 use super::super::effects::contact::is_of_clamps;
-use super::super::effects::device::displacement;
 use super::super::model::Context;
 use super::super::model::entry::{Entry, linear};
 use super::curve::{AXES, MOST, SIZE, cosine, curve, scaled};
@@ -23,7 +22,7 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
 fn along(context: &Context, axis: usize) -> Option<Entry> {
     let recording = context.recording;
     let rows = 0..context.configurations.len();
-    let x = scaled(&rows.map(|row| displacement(recording, row)[axis]).collect::<Vec<_>>())?;
+    let x = scaled(&rows.map(|row| context.displacement(row)[axis]).collect::<Vec<_>>())?;
     let parameters = (1..=MOST).map(|k| {
         let column = context.column(|row, _| recording.device(row).rotation.column(axis) * cosine(k, x[row]));
         (linear(format!("device_{}_cosine_{k}_um", AXES[axis]), SIZE / (1 + k) as f64), column)

@@ -18,6 +18,7 @@ fn columns_are_what_a_changed_robot_does() {
     let force = compensation.compliance.as_ref().unwrap().force;
     let weight = compensation.compliance.as_ref().unwrap().gravity / crate::units::STANDARD_GRAVITY;
     let recording = &campaign.measurements;
+    let deviations = calibration.deviations.clone();
     let step = |row: usize, j: usize| recording.joints(row)[j] - recording.joints(row.saturating_sub(1))[j];
     let bend = move |row: &mut Row, pull: Vector3<f64>| {
         let mut kinematics = Kinematics::new(&row.setup);
@@ -103,7 +104,9 @@ fn columns_are_what_a_changed_robot_does() {
             Box::new(move |r, row, v| {
                 let device = &recording.groups[recording.rows[row].group].device;
                 let Targets::Points(points) = &recording.targets else { panic!("no points") };
-                let pull = device.rotation * device.inverse().point(&points[row]) * v;
+                // less the error of the reading, as far as the calibration shows it
+                let point = points[row] + deviations[row];
+                let pull = device.rotation * device.inverse().point(&point) * v;
                 bend(r, pull);
                 r.loads.tip_force += pull;
             }),

@@ -152,9 +152,9 @@ fn sentences_are_those_of_the_laws() {
         ),
         (
             "rod_stiffness",
-            "rod, under its weight",
-            "The rod is 100 ± 20 % softer than its model under its weight: a rod stiffness that differs \
-             from its model",
+            "rod, under the contact force",
+            "The rod is 100 ± 20 % softer than its model under the contact force: a rod stiffness that \
+             differs from its model",
         ),
     ];
     for (effect, location, expected) in cases {

@@ -292,6 +292,21 @@ fn a_clamp_that_moved_does_not_count_less_and_so_stays_visible() {
     assert!(scale(1) > 0.5 * scale(0), "{} {}", scale(1), scale(0));
 }
 
+/// The probability of a recording is compared about two robots: how clamps scatter must not make
+/// one that leaves little the likelier or the less likely.
+#[test]
+fn rows_of_unequal_scatter_are_the_same_density_about_every_robot() {
+    let campaign = noisy(&clamps(5), |_| 20.0 * UM, 3);
+    let mut calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    for _ in 0..2 {
+        let of_group = [1.0, 2.0, 3.0, 4.0, 5.0].map(|scatter| scatter * 10.0 * UM);
+        let context = Context::new(&campaign, &calibration).unwrap().scattered(&of_group);
+        let density: f64 = context.scale.iter().map(|scale| scale.ln()).sum();
+        assert!(density.abs() < 1e-9, "{density}");
+        calibration.deviations.iter_mut().for_each(|deviation| *deviation *= 3.0);
+    }
+}
+
 #[test]
 fn the_weight_of_a_rod_tells_no_torque_of_an_arm_of_unknown_masses() {
     let mut campaign = noisy(&clamps(12), |_| 20.0 * UM, 9);

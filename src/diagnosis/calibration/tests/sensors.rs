@@ -21,6 +21,11 @@ fn shown(campaign: &Campaign, shown: &dyn Fn(Vector3<f64>) -> Vector3<f64>, seed
     recorded(campaign, &by, NOISE, seed)
 }
 
+/// The campaign with more noise.
+fn noisy(campaign: &Campaign, noise: f64, seed: u64) -> Campaign {
+    recorded(campaign, &|_| Vector3::zeros(), noise, 100 + seed)
+}
+
 fn diagnosed(campaign: &Campaign) -> (Vec<Finding>, Option<String>) {
     let found = diagnose_as_recorded(campaign, Mode::Fea, &Options::default()).unwrap();
     let left = found.diagnosis.discrepancy.and_then(|left| left.location);
@@ -48,6 +53,23 @@ fn a_sensor_that_shows_too_much_is_named_with_its_axis_and_factor() {
         assert_number(&findings[0], "factor", factor);
         let word = if factor > 1.0 { "% too high" } else { "% too low" };
         assert!(findings[0].description.observed.ends_with(word), "{}", findings[0].description.observed);
+    }
+}
+
+/// A column of what was recorded would have its error in common with the residual, and show
+/// ε²/(u² + ε²) of it as a scale: 3 % here.
+#[test]
+fn the_error_of_a_reading_is_no_scale() {
+    let campaign = clamps(100);
+    let named_of = |factor: f64, seed: u64| {
+        let matrix = Matrix3::from_diagonal(&Vector3::new(1.0, factor, 1.0));
+        diagnosed(&noisy(&shown(&campaign, &|u| matrix * u, seed), 16.0 * UM, seed)).0
+    };
+    for seed in [1, 2] {
+        assert!(named_of(1.0, seed).is_empty(), "seed {seed}");
+        let findings = named_of(1.2, seed);
+        assert_eq!((findings.len(), findings[0].effect.name), (1, "sensor_scale"));
+        assert_number(&findings[0], "factor", 1.2);
     }
 }
 

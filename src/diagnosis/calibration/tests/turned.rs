@@ -7,6 +7,7 @@ use nalgebra::DMatrix;
 
 use super::changed::{Case, Row, assert_changes};
 use super::*;
+use crate::beam::Physics;
 use crate::calibration::Compensation;
 use crate::robot::{Body, Robot};
 use crate::units::STANDARD_GRAVITY;
@@ -114,6 +115,13 @@ fn joints_and_base_give_way_to_their_torques() {
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
     let compensation = Compensation::new(&campaign, Mode::Fea).unwrap();
     let rod = compensation.compliance.unwrap();
+    // the same rod of twice the density, with the same ball at its tip
+    let dense = ROD.replace("density_kg_m3 = 7930", "density_kg_m3 = 15860");
+    assert_ne!(dense, ROD);
+    let dense = Rod::from_toml("rod", &dense).unwrap();
+    let denser = Compliance::of_model(&dense, &Physics::default(), DEFAULT_ELEMENTS).unwrap();
+    let [once, twice] = [campaign.rod.as_ref().unwrap(), &dense]
+        .map(|rod| Body { mass: rod.mass(), centre: rod.centre_of_mass() });
     let recording = &campaign.measurements;
     // the last move of a joint that was one
     let came_from = |row: usize, j: usize| {
@@ -166,12 +174,17 @@ fn joints_and_base_give_way_to_their_torques() {
             }),
         ),
         (
-            "rod_stiffness",
-            "rod, under its weight",
+            "rod_mass",
+            "rod",
             "factor",
             Box::new(move |r, _, v| {
                 let down = r.at_rest(|kinematics| kinematics.flange.rotation.tr_mul(&r.loads.gravity));
-                r.deflection += rod.gravity * down * (v / STANDARD_GRAVITY);
+                r.deflection += (denser.gravity - rod.gravity) * down * (v / STANDARD_GRAVITY);
+                let (known, more) = (r.loads.payload.unwrap(), twice.mass - once.mass);
+                let moment = twice.centre * twice.mass - once.centre * once.mass;
+                let mass = known.mass + v * more;
+                let centre = (known.centre * known.mass + moment * v) / mass;
+                r.loads.payload = Some(Body { mass, centre });
             }),
         ),
     ];

@@ -19,6 +19,7 @@ mod columns;
 mod distance;
 mod draft;
 mod found;
+mod held;
 mod motion;
 mod moves;
 mod names;
@@ -31,6 +32,7 @@ mod typed;
 
 use self::columns::Silent;
 use self::draft::Draft;
+use self::held::{held, mostly_held, without_held};
 use self::motion::measure_moves;
 use self::moves::Other;
 use self::quick::LoadedRobot;
@@ -260,11 +262,15 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Option
         forces.push((bodies.len(), factor));
         bodies.push(bodies[0].with_contact_force_times(factor));
     }
-    let silent = columns::silent(campaign, &draft);
+    let mut silent = columns::silent(campaign, &draft);
+    let held = held(&draft);
+    silent.extend(mostly_held(&draft, &held));
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
     let moves = moves::all(campaign, &draft, &meant, &forces);
     let of_rows = moves::of_rows::of_rows(campaign, &draft);
     let tip_mass = campaign.rod.as_ref().map_or(0.0, |rod| rod.tip_mass);
+    let whole = draft.clone();
+    let draft = if is_sure { draft } else { without_held(draft, &held) };
     let mut search = MistakeSearch { draft, bodies, moves, of_rows, tip_mass, guess_weight: 1.0 };
     let mut result = if is_sure { None } else { search.found() };
     let is_rough = |(_, best, _): &(FittedDraft, FittedDraft, Vec<AdoptedStep>)| {
@@ -286,7 +292,9 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Option
     for found in &found {
         mended.add_found(&search, &best, found);
     }
-    for slip in search.slips(&best, &campaign.measurements) {
+    let mut slips = search.held_slips(&campaign.measurements, (&best, &whole), &held);
+    slips.extend(search.slips(&best, &campaign.measurements));
+    for slip in slips {
         best.steps.push(SearchStep::Slip(slip.change.clone()));
         mended.add_slip(slip);
     }

@@ -181,10 +181,8 @@ fn far_from_file(found: &CalibrationDiagnosis) -> Option<String> {
 
 /// Where `--apply` writes a finding; `None` where no file has a place for it.
 fn destination(finding: &Finding) -> Option<&'static str> {
-    if finding.parts.is_empty() {
-        return Some("campaign");
-    }
     match finding.written_to {
+        WrittenTo::Model | WrittenTo::Recording if finding.parts.is_empty() => Some("campaign"),
         WrittenTo::Model => Some("robot"),
         WrittenTo::Recording => Some("measurements"),
         WrittenTo::Nowhere => None,

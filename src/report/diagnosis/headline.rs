@@ -2,7 +2,7 @@
 
 use super::subject::Subject;
 use crate::diagnosis::Limitation;
-use crate::inference::{Diagnosis, Finding, Kind, Location};
+use crate::inference::{Diagnosis, Finding, Kind, Location, WrittenTo};
 use crate::units::{UM, significant};
 
 /// So many findings are said in full; more are named.
@@ -143,6 +143,9 @@ fn worth(subject: &Subject) -> String {
     if findings.is_empty() {
         let it = if mistakes.len() > 1 { "they are" } else { "it is" };
         let (before, after) = (um(errors.before), um(errors.after));
+        if mistakes.iter().all(|mistake| mistake.written_to == WrittenTo::Nowhere) {
+            return format!(" Until {it} corrected, these {} say nothing else.", subject.noun);
+        }
         return match errors.after < errors.before && before != after {
             true => {
                 format!(

@@ -126,15 +126,30 @@ pub static ROBOT_MISTAKE: Effect = Effect {
     ..NONE
 };
 
-/// A column that shows the same value in all rows.
+/// A column that shows the same value in all rows, or in many one after the other.
 pub static STUCK_SENSOR: Effect = Effect {
     name: "stuck_sensor",
-    summary: "a column shows the same value in all rows",
+    summary: "a column shows the same value in all rows, or in many one after the other",
     formula: "recorded = constant",
+    prior: "more equal numbers than one in a thousand recordings has by chance, farther out than the others",
     parameters: &[(&["mm"], "what a position shows"), (&["deg"], "what a joint shows")],
-    needs: "five rows; of a joint a fit that fails",
+    needs: "five rows; of a joint that never moves a fit that fails",
     cause: "a value that was not recorded",
     cause_at: |location| at("a column that does not change", location),
+    written_to: WrittenTo::Nowhere,
+    ..NONE
+};
+
+/// A device at the end of its range.
+pub static SATURATED_SENSOR: Effect = Effect {
+    name: "saturated_sensor",
+    summary: "a position is cut off at a limit",
+    formula: "recorded = limit for all that lies beyond",
+    prior: "more equal numbers than one in a thousand recordings has by chance, farther out than the others",
+    parameters: &[(&["mm"], "the limit")],
+    needs: "five rows at the limit, others below it",
+    cause: "a sensor at the end of its range",
+    cause_at: |location| at("a saturated sensor", location),
     written_to: WrittenTo::Nowhere,
     ..NONE
 };

@@ -47,7 +47,7 @@ pub static ALL: [&CalibrationEffect; 26] = [
 
 /// Every mistake that the diagnosis of a calibration knows. They are no terms of a model: they are
 /// undone before there is one.
-pub static MISTAKES: [&Effect; 13] = [
+pub static MISTAKES: [&Effect; 14] = [
     &mistakes::SIGN_MISTAKE,
     &mistakes::SWAP_MISTAKE,
     &mistakes::UNIT_MISTAKE,
@@ -58,6 +58,7 @@ pub static MISTAKES: [&Effect; 13] = [
     &mistakes::ROD_MISTAKE,
     &mistakes::ROBOT_MISTAKE,
     &mistakes::STUCK_SENSOR,
+    &mistakes::SATURATED_SENSOR,
     &mistakes::COPIED_COLUMN,
     &mistakes::TYPING_MISTAKE,
     &mistakes::COPY_MISTAKE,

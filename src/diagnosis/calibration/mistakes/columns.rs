@@ -11,7 +11,7 @@ use crate::units::{DEG, MM, significant};
 /// Fewest rows in which equal values are no accident.
 const FEWEST: usize = 5;
 /// Values that differ by less are the same, rad or m: below the last digit of any file.
-const SAME: f64 = 1e-12;
+pub(super) const SAME: f64 = 1e-12;
 
 /// Something that is said of a column, and cannot be undone.
 pub(super) struct Silent {
@@ -42,7 +42,7 @@ pub(super) fn silent(campaign: &Campaign, draft: &Draft) -> Vec<Silent> {
     all
 }
 
-fn is_constant(values: &[f64]) -> bool {
+pub(super) fn is_constant(values: &[f64]) -> bool {
     values.iter().all(|value| (value - values[0]).abs() <= SAME)
 }
 
@@ -116,7 +116,7 @@ fn joints(campaign: &Campaign, draft: &Draft) -> Vec<Silent> {
     all
 }
 
-fn stuck(location: Key, estimates: Vec<Estimate>, what: &str, why: String, rows: usize) -> Silent {
+pub(super) fn stuck(location: Key, estimates: Vec<Estimate>, what: &str, why: String, rows: usize) -> Silent {
     let cure = format!("Record {what} once more");
     let log_odds = agreement(rows - 1);
     Silent { effect: &STUCK_SENSOR, location, estimates, cure, why, log_odds, only_if_failed: false }

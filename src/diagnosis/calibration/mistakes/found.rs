@@ -13,7 +13,7 @@ use super::names::{place, pose_name};
 use super::search::{AdoptedStep, FittedDraft, MistakeSearch, SearchStep};
 use super::slips::Slip;
 use super::{Mended, Suspicion};
-use crate::inference::{Description, Effect, Estimate, Finding, Location, Part, Rival};
+use crate::inference::{Description, Effect, Estimate, Finding, Location, Part, Rival, WrittenTo};
 use crate::units::{DEG, MM, significant};
 
 impl Mended {
@@ -109,6 +109,7 @@ impl Mended {
         self.add(effect, location.into(), estimates, (&cure, &why), log_odds);
         let Some(finding) = self.found.last_mut() else { return };
         finding.explains = explains;
+        finding.written_to = WrittenTo::Recording;
         let rival = |(effect, place)| Rival::without_term(effect, Location::Key(place), 1.0);
         finding.rivals = rivals.into_iter().map(rival).collect();
     }

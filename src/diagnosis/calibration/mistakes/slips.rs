@@ -12,6 +12,7 @@
 //! For a disturbance it is as likely to lie anywhere within r. What has no such explanation stays.
 
 mod copies;
+mod held;
 mod odds;
 mod relabelled;
 mod suspects;

@@ -1,4 +1,5 @@
 mod fixtures;
+mod held;
 mod parts;
 
 use nalgebra::Vector3;

@@ -175,3 +175,20 @@ fn a_validation_from_another_place_is_told_from_a_bad_robot() {
     let answer = sandbox.run("calibrate sim/tracked.toml");
     assert!(answer.stderr.contains("tracker or base stood elsewhere"), "{}", answer.stderr);
 }
+
+/// Two thirds of a column that stood still cannot be undone, and nothing is promised of it.
+#[test]
+fn of_what_cannot_be_undone_no_residual_is_promised() {
+    let sandbox = Sandbox::new();
+    let text = rewritten(&sandbox.read(MEASUREMENTS), |row, header, cells| {
+        if row >= 20 {
+            cells[at(header, "z_mm")] = "0.1234".into();
+        }
+    });
+    sandbox.write(MEASUREMENTS, &text);
+    let answer = sandbox.run(&format!("diagnose calibration {CAMPAIGN} --apply --out fixed"));
+    assert_eq!(answer.status, Some(1));
+    assert!(answer.stderr.contains("--apply has no effect"), "{}", answer.stderr);
+    assert_reads("diagnose-stuck", answer.stdout.split("Parameters with").next().unwrap());
+    assert!(answer.stdout.contains("All that follows is of the recording as it is."), "{}", answer.stdout);
+}

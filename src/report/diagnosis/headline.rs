@@ -133,6 +133,11 @@ fn capital(words: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
+/// False for a mistake that nothing can undo but another recording.
+pub fn is_undone(finding: &Finding) -> bool {
+    finding.kind() != Kind::Mistake || finding.written_to != WrittenTo::Nowhere
+}
+
 /// What the findings do to the errors.
 fn worth(subject: &Subject) -> String {
     let errors = subject.errors;
@@ -143,7 +148,7 @@ fn worth(subject: &Subject) -> String {
     if findings.is_empty() {
         let it = if mistakes.len() > 1 { "they are" } else { "it is" };
         let (before, after) = (um(errors.before), um(errors.after));
-        if mistakes.iter().all(|mistake| mistake.written_to == WrittenTo::Nowhere) {
+        if !mistakes.iter().any(|mistake| is_undone(mistake)) {
             return format!(" Until {it} corrected, these {} say nothing else.", subject.noun);
         }
         return match errors.after < errors.before && before != after {

@@ -1,6 +1,6 @@
 //! The body of a diagnosis' report, of a rig or of a calibration.
 
-use super::headline::{RIVALS_SAID, is_scatter_estimated, sentence, um};
+use super::headline::{RIVALS_SAID, is_scatter_estimated, is_undone, sentence, um};
 use super::hidden::hidden;
 use super::law;
 use super::subject::Subject;
@@ -55,6 +55,9 @@ fn whose(subject: &Subject) -> String {
 /// How sure a finding is, and what it may be as well.
 fn details(subject: &Subject, index: usize, finding: &Finding) -> String {
     let whose = whose(subject);
+    if !is_undone(finding) {
+        return "Without the right numbers nobody knows how much of the residual it is.".into();
+    }
     let mut words = format!("It explains {} µm rms{whose}{}", um(finding.explains), subject.per);
     if let Some((some, all)) = finding.found_in_folds {
         words += &format!(", and is found in {some} of {all} searches that leave a part of them out");
@@ -73,8 +76,13 @@ fn details(subject: &Subject, index: usize, finding: &Finding) -> String {
 }
 
 fn location(subject: &mut Subject) -> Section {
-    let has_mistake = subject.diagnosis.findings.iter().any(|finding| finding.kind() == Kind::Mistake);
-    let said = "All that follows is of the recording without the mistakes above.";
+    let findings = subject.diagnosis.findings.iter();
+    let mut mistakes = findings.filter(|finding| finding.kind() == Kind::Mistake).peekable();
+    let has_mistake = mistakes.peek().is_some();
+    let said = match mistakes.any(is_undone) {
+        true => "All that follows is of the recording without the mistakes above.",
+        false => "All that follows is of the recording as it is.",
+    };
     let mut blocks: Vec<Block> = has_mistake.then(|| Block::Paragraph(said.into())).into_iter().collect();
     blocks.push(locate(subject));
     blocks.append(&mut subject.places);

@@ -68,6 +68,8 @@ pub struct Tails {
     pub scale: f64,
     /// ν; infinity for normal tails.
     pub freedom: f64,
+    /// Standard deviation that rounding makes by itself.
+    rounding: f64,
 }
 
 impl Tails {
@@ -76,13 +78,13 @@ impl Tails {
     /// no smaller.
     pub fn of(residual: &DVector<f64>, rounding: f64) -> Tails {
         let residual = &residual.map(|r| r.hypot(rounding));
-        let normal = Tails { scale: rms(residual), freedom: f64::INFINITY };
+        let normal = Tails { scale: rms(residual), freedom: f64::INFINITY, rounding };
         if residual.len() < FEWEST || normal.scale <= 0.0 {
             return normal;
         }
         let fitted = TAILS.map(|freedom| {
             let scale = scale(residual, freedom);
-            let tails = Tails { scale, freedom };
+            let tails = Tails { scale, freedom, rounding };
             (tails, tails.log_likelihood(residual))
         });
         let best = fitted.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
@@ -125,13 +127,14 @@ impl Tails {
         if self.freedom.is_infinite() { 1.0 } else { (self.freedom + 1.0) / (self.freedom + 3.0) }
     }
 
-    /// Single data that are far off. Beside a few of them the others are normal.
+    /// Single data that are far off. Beside a few of them the others are normal; where most show
+    /// none at all on a coarse display, one of its digits is not far.
     pub fn suspects(&self, residual: &DVector<f64>) -> Vec<Suspect> {
         // half the width that holds 68 % of the data, were they normal: 1.4826 × the median size
         let mut sizes: Vec<f64> = residual.iter().map(|r| r.abs()).collect();
         sizes.sort_by(f64::total_cmp);
         let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-        let core = (1.4826 * median).max(0.2 * self.scale);
+        let core = (1.4826 * median).max(0.2 * self.scale).max(self.rounding);
         let far = |(datum, r): (usize, &f64)| {
             let sigma = r / core;
             (core > 0.0 && sigma.abs() > SUSPECT).then_some(Suspect { datum, sigma })
@@ -189,6 +192,21 @@ mod tests {
     }
 
     #[test]
+    fn a_digit_of_a_coarse_display_is_not_far_off() {
+        let mut random = Random::seeded(12, 0);
+        // two of three channels do not move; the third trembles by a third of a digit
+        let shown =
+            |k: usize| if k.is_multiple_of(3) { (0.5 + 0.3 * random.normal()).round() - 0.5 } else { 1e-3 };
+        let residual = DVector::from_iterator(300, (0..300).map(shown));
+        let rounding = 1.0 / 12.0f64.sqrt();
+        assert!(Tails::of(&residual, rounding).suspects(&residual).is_empty());
+        let mut with = residual.clone();
+        with[40] = 3.0;
+        let suspects = Tails::of(&with, rounding).suspects(&with);
+        assert_eq!(suspects.iter().map(|s| s.datum).collect::<Vec<_>>(), [40]);
+    }
+
+    #[test]
     fn normal_noise_has_normal_tails_and_no_suspects() {
         let tails = Tails::of(&noise(&[]), 0.0);
         assert!(tails.freedom.is_infinite() && (tails.scale - 1.0).abs() < 0.1, "{tails:?}");
@@ -206,7 +224,8 @@ mod tests {
                 || random.normal() / ((0..3).map(|_| random.normal().powi(2)).sum::<f64>() / 3.0).sqrt();
             let sample = DVector::from_fn(n, |_, _| t3());
             // the likeliest mean, by weights about it
-            let (mut mean, mut total, mut tails) = (0.0, 0.0, Tails { freedom: 3.0, scale: 1.0 });
+            let (mut mean, mut total, mut tails) =
+                (0.0, 0.0, Tails { freedom: 3.0, scale: 1.0, rounding: 0.0 });
             for _ in 0..50 {
                 let left = sample.add_scalar(-mean);
                 tails.scale = scale(&left, 3.0);

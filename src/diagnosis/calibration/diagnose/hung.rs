@@ -31,8 +31,8 @@ const TRIED: [(Hung, &[f64]); 3] = [
     (Hung::Flange, &[0.5, 1.5, 3.0, 6.0]),
     (Hung::Rod, &[-0.6, -0.3, 0.5, 1.0, 2.0]),
 ];
-/// A rod that weighs a tenth: nothing is lighter.
-const LIGHTEST: f64 = -0.9;
+/// A rod that weighs a tenth: none is lighter.
+const LIGHTEST_ROD: f64 = -0.9;
 /// Times that the steps about the best one are halved.
 const HALVED: usize = 4;
 
@@ -122,11 +122,18 @@ fn beside_masses<'c>(prepared: &Prepared<'c>) -> Result<Vec<(Calibration<'c>, Ca
             Ok(with(mass)?
                 .map_or(f64::INFINITY, |beside| beside.0.deviations.iter().map(|d| d.norm_squared()).sum()))
         };
+        // nothing weighs less than nothing
+        let lightest = match own {
+            Hung::Tip => -prepared.context.modelled_mass.0,
+            Hung::Flange => 0.0,
+            Hung::Rod => LIGHTEST_ROD,
+        };
+        let lighter = if own == Hung::Tip { vec![lightest, lightest / 2.0] } else { Vec::new() };
         let mut best = (0.0, f64::INFINITY);
-        for mass in masses {
-            let left = left(*mass)?;
+        for &mass in masses.iter().chain(&lighter) {
+            let left = left(mass)?;
             if left < best.1 {
-                best = (*mass, left);
+                best = (mass, left);
             }
         }
         // no calibration with any of them has converged
@@ -135,7 +142,7 @@ fn beside_masses<'c>(prepared: &Prepared<'c>) -> Result<Vec<(Calibration<'c>, Ca
         }
         let mut step = best.0 / 2.0;
         for _ in 0..HALVED {
-            for mass in [best.0 - step, best.0 + step].map(|mass| mass.max(LIGHTEST)) {
+            for mass in [best.0 - step, best.0 + step].map(|mass| mass.max(lightest)) {
                 let left = left(mass)?;
                 if left < best.1 {
                     best = (mass, left);

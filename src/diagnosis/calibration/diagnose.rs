@@ -9,14 +9,13 @@ pub mod memory;
 pub mod prepared;
 pub mod tails;
 
-use nalgebra::DVector;
-
 use self::arrival::unknown_arrival;
 use self::beside::{calibrated_beside, unequal};
 use self::hung::{beside_hidden_masses, may_bend, may_hide, with_rivals};
 use self::limits::{limits, noisy};
 use self::memory::check_memory;
 use self::prepared::{FirstLook, Prepared};
+use super::effects::contact::is_of_clamps;
 use super::effects::{EVERY_ROW, registry};
 use super::laws::sites::sites;
 use super::model::CalibrationModel;
@@ -84,7 +83,8 @@ pub fn diagnose_calibrated<'c>(
         let tails = if look.weights.is_none() { tails::weights(&prepared, &hypothesis, &left) } else { None };
         let moved_after = moved_after(&prepared, &hypothesis);
         let is_in_place = moved_after.iter().all(|row| look.moved_after.contains(row));
-        let is_read = is_read(&prepared, &hypothesis, &left);
+        // whose the scatter is counts for all that is in proportion to the readings of devices
+        let is_read = prepared.context.left_of_rows().is_some() || !is_of_clamps(&prepared.context);
         if about.is_none() && is_equal && tails.is_none() && is_in_place && is_read {
             break;
         }
@@ -155,19 +155,6 @@ fn moved_after(prepared: &Prepared, hypothesis: &Hypothesis) -> Vec<usize> {
     let location = |term: &Term| &prepared.model.terms.candidates[term.candidate].location;
     hypothesis.terms.iter().map(location).filter_map(Location::moved_after).collect()
 }
-
-/// True unless something is in proportion to the readings, and of their errors something else is
-/// known now.
-fn is_read(prepared: &Prepared, hypothesis: &Hypothesis, left: &DVector<f64>) -> bool {
-    let effect = |term: &Term| prepared.model.terms.candidates[term.candidate].effect;
-    let is_of_readings = |term: &Term| registry::is_of_readings(effect(term));
-    let context = &prepared.context;
-    !hypothesis.terms.iter().any(is_of_readings)
-        || context.misread_otherwise(&prepared.model.by_row(left)) < MISREAD * context.noise
-}
-
-/// Share of the noise that errors of the readings may change by.
-const MISREAD: f64 = 0.1;
 
 /// So many times a search begins anew about the robot that is left beside what was found, with the
 /// scatter that its clamps show then, with what poses count that are no farther out than the tails

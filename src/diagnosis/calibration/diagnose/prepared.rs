@@ -61,7 +61,7 @@ impl<'c> Prepared<'c> {
             None => context,
         };
         let context = match &look.left {
-            Some(left) => context.misread(left),
+            Some(left) => context.left(left),
             None => context,
         };
         let context = context.moved_after(&look.moved_after);

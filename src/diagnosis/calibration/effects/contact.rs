@@ -129,6 +129,10 @@ fn springs(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         lacks.push(lack(&CONTACT_SPRING, reason));
         return Vec::new();
     }
+    if !context.shows_displacements() {
+        lacks.push(lack(&CONTACT_SPRING, "displacements are no larger than the scatter"));
+        return Vec::new();
+    }
     let displacement = |row: usize| context.recording.device(row).rotation * context.displacement(row);
     at_clamps(context, |location, is_there| {
         let push = |row: usize| is_there(context.recording.rows[row].group).then(|| displacement(row));

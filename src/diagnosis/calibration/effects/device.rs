@@ -66,6 +66,10 @@ fn devices(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         lacks.push(lack(&SENSOR_SCALE, "there are no clamps"));
         return Vec::new();
     }
+    if !context.shows_displacements() {
+        lacks.push(lack(&SENSOR_SCALE, "displacements are no larger than the scatter"));
+        return Vec::new();
+    }
     let recording = context.recording;
     // what is shown along one axis and is none, per displacement that is shown along another
     let column = |shown: usize, along: usize, is_there: &dyn Fn(usize) -> bool| {

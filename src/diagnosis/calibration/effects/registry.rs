@@ -85,11 +85,6 @@ pub(in crate::diagnosis::calibration) fn pulls(effect: &Effect) -> bool {
     OF_LOADS.iter().any(|known| known.effect == *effect)
 }
 
-/// True for what is in proportion to what the devices of clamps read.
-pub(in crate::diagnosis::calibration) fn is_of_readings(effect: &Effect) -> bool {
-    [&SENSOR_SCALE, &CONTACT_SPRING].iter().any(|known| known.effect == *effect)
-}
-
 /// The record of an effect; `None` for what nobody has named.
 pub(in crate::diagnosis::calibration) fn record(effect: &Effect) -> Option<&'static CalibrationEffect> {
     ALL.into_iter().find(|known| known.effect == *effect)

@@ -6,9 +6,14 @@
 //! its centre          Σ_{j≤k} Jⱼ·cⱼ·zⱼ·(e × g)·m_k·u            e an axis of the link, u a share of its distance
 //! a number of the rod (R·(∂C^F·F + ∂C^g·g) + ∂yield(weight))·u   by the rod file's standard uncertainties
 //! place of a clamp    −e·u                                      where the campaign states u
+//! readings' share     R·e·eᵀ·Rᵀ·u·σ²/ū²·(λ − ½)                 λ of the scatter σ² along e is theirs, not the arm's
 //! ```
+//!
+//! The last is what the displacement u of a clamp's ball has in common with the residual: where the
+//! readings scatter it is larger by their error ε, which the residual holds too, and where the
+//! joints do the residual is the less. How much is whose nobody knows: 0 to 1, evenly.
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use super::super::model::entry::Column;
 use super::super::model::{Configuration, Context};
@@ -24,6 +29,8 @@ use crate::units::{MM, STANDARD_GRAVITY};
 
 /// Part of a noise below which the length of a column says nothing: such a number is left out.
 const UNFELT: f64 = 0.5;
+/// Standard deviation of a number that is anywhere between 0 and 1: 1/√12.
+const EVENLY: f64 = 0.288_675;
 /// Least distance from its joint's frame that the share of a centre's uncertainty is of, m.
 const LEAST_DISTANCE: f64 = 20.0 * MM;
 
@@ -32,6 +39,10 @@ pub fn with_numbers(evidence: Evidence, campaign: &Campaign, mode: Mode, context
     let mut numbers = of_links(campaign, context);
     numbers.extend(of_rod(campaign, mode, context));
     numbers.extend(of_clamps(campaign, context));
+    // all that is in proportion to the readings is felt together
+    let of_readings = of_readings(&evidence, context);
+    let others = numbers.len();
+    numbers.extend(of_readings);
     if numbers.is_empty() {
         return evidence;
     }
@@ -40,7 +51,7 @@ pub fn with_numbers(evidence: Evidence, campaign: &Campaign, mode: Mode, context
         column.add_to_slice(columns.column_mut(k).as_mut_slice(), number.standard_uncertainty);
     }
     let left = Whitening::new(&evidence, &evidence.residual).apply_columns(&columns);
-    let is_felt = |k: &usize| left.column(*k).norm() > UNFELT * context.noise;
+    let is_felt = |k: &usize| *k >= others || left.column(*k).norm() > UNFELT * context.noise;
     let felt: Vec<usize> = (0..numbers.len()).filter(is_felt).collect();
     Evidence {
         nominal_numbers: felt.iter().map(|&k| numbers[k].0.clone()).collect(),
@@ -123,6 +134,55 @@ fn of_rod(campaign: &Campaign, mode: Mode, context: &Context) -> Vec<(NominalPar
         Some((number, column))
     };
     rod.nominal_numbers().into_iter().filter_map(of_number).collect()
+}
+
+/// Whose the scatter is, altogether and along each axis e of {T}, by what a displacement has in
+/// common with its residual: with E_ab the displacement along b shown along a, without what is
+/// fitted,
+///
+/// ```text
+/// E[r | û] = (λ − ½)·Σ_ab (G⁻¹·h)_ab·E_ab      G = Eᵀ·E, h_ab = σ²·Σ_rows (R_c·a)ᵀ·R·e·eᵀ·Rᵀ·(R_c·b)
+/// ```
+///
+/// û = u − ½·r, σ² of a coordinate along e; altogether with I in place of e·eᵀ.
+fn of_readings(evidence: &Evidence, context: &Context) -> Vec<(NominalParameter, Column)> {
+    // what a calibration leaves is no scatter yet
+    let Some(left_of_rows) = context.left_of_rows().filter(|_| context.shows_displacements()) else {
+        return Vec::new();
+    };
+    let device = |row: usize| context.recording.device(row).rotation;
+    let mut shown = DMatrix::zeros(evidence.residual.len(), 9);
+    for (k, mut column) in shown.column_iter_mut().enumerate() {
+        let of_row = |row: usize| device(row).column(k / 3) * context.displacement(row)[k % 3];
+        context.column(|row, _| of_row(row)).add_to_slice(column.as_mut_slice(), 1.0);
+    }
+    let left = Whitening::new(evidence, &evidence.residual).apply_columns(&shown);
+    let Some(gram) = left.tr_mul(&left).cholesky() else { return Vec::new() };
+    let of_part = |(along, of_what): (Matrix3<f64>, String)| {
+        let rows = || context.configurations.iter().enumerate();
+        let scatter: f64 =
+            rows().map(|(row, there)| (there.in_world(&along) * left_of_rows[row]).norm_squared()).sum();
+        let common: Matrix3<f64> =
+            rows().map(|(row, there)| device(row).tr_mul(&there.in_world(&along)) * device(row)).sum();
+        let per_share = scatter / (rows().len() as f64 * along.trace());
+        let share = gram.solve(&DVector::from_fn(9, |k, _| per_share * common[(k / 3, k % 3)]));
+        let share = Matrix3::from_fn(|a, b| share[3 * a + b]);
+        let column = context.column(|row, _| device(row) * (share * context.displacement(row)));
+        let number = NominalParameter {
+            name: format!("share of the scatter{of_what} that is the readings'"),
+            unit: "",
+            si: 1.0,
+            value: 0.5,
+            standard_uncertainty: EVENLY,
+        };
+        (number, column)
+    };
+    let of_axis = |axis: Axis| {
+        let along = Matrix3::from_fn(|i, j| f64::from(u8::from(i == j && i == axis.index())));
+        (along, format!(" along {axis} of the tool"))
+    };
+    let whole = std::iter::once((Matrix3::identity(), String::new()));
+    whole.chain(Axis::ALL.map(of_axis)).map(of_part).collect()
 }
 
 fn of_clamps(campaign: &Campaign, context: &Context) -> Vec<(NominalParameter, Column)> {

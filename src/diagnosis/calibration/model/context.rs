@@ -14,6 +14,10 @@ use crate::error::Result;
 use crate::inference::Pattern;
 use crate::robot::{Body, Effect, Motion, Setup};
 
+/// Share of the squares of displacements that the scatter may have for the displacements to be
+/// known: a scale that is off by a twentieth is then not told from whose the scatter is.
+const MOST_COMMON: f64 = 0.1;
+
 /// All that effects need to know of a campaign and its calibration.
 pub struct Context<'a> {
     pub recording: &'a Recording,
@@ -29,8 +33,10 @@ pub struct Context<'a> {
     pub noise: f64,
     /// How far each row is off, in noises of its group.
     off: Vec<f64>,
-    /// What of each recorded point is error, as far as is known, in {W}, m.
-    misread: Vec<Vector3<f64>>,
+    /// What a first look has left of each row, in {W}, m; before that, what the calibration leaves.
+    left: Vec<Vector3<f64>>,
+    /// True where a first look has left that.
+    is_second_look: bool,
     /// Motion of every joint.
     pub motions: Vec<Motion>,
     /// Does the robot's file have masses? Without them the torques are those of rod and contact
@@ -76,7 +82,7 @@ impl<'a> Context<'a> {
         Ok(Context {
             noise,
             off: calibration.deviations.iter().map(|deviation| deviation.norm() / noise).collect(),
-            misread: calibration.deviations.iter().map(|deviation| -deviation).collect(),
+            left: calibration.deviations.iter().map(|deviation| -deviation).collect(),
             ..Context::still(campaign, calibration.mode, &calibration.setup, &calibration.deflections)?
         })
     }
@@ -101,8 +107,8 @@ impl<'a> Context<'a> {
     }
 
     /// The same where a first look has left so much of each row, m in {W}.
-    pub fn misread(self, left: &[Vector3<f64>]) -> Self {
-        Context { misread: left.to_vec(), ..self }
+    pub fn left(self, left: &[Vector3<f64>]) -> Self {
+        Context { left: left.to_vec(), is_second_look: true, ..self }
     }
 
     /// The same where a first look has seen something move after these rows.
@@ -150,7 +156,8 @@ impl<'a> Context<'a> {
             scale: vec![1.0; recording.len()],
             noise: 0.0,
             off: vec![0.0; recording.len()],
-            misread: vec![Vector3::zeros(); recording.len()],
+            left: vec![Vector3::zeros(); recording.len()],
+            is_second_look: false,
             has_masses: campaign.robot.has_masses(),
             effects: &campaign.robot.effects,
             motions: campaign.robot.joints.iter().map(|joint| joint.motion).collect(),
@@ -223,24 +230,36 @@ impl<'a> Context<'a> {
     /// The displacement of the ball in the frame of its device, m; none of poses that nobody
     /// measured.
     ///
-    /// Recorded less what is known of its error. A column of the recorded one itself would have
-    /// that error in common with the residual: ε²/(u² + ε²), 2 % of 0.15 mm, shows as a scale.
+    /// Half way from the recorded one to the predicted one. A column of the recorded one would have
+    /// the error of the reading in common with the residual, ε²/(u² + ε²), 2 % of 0.15 mm, shows as
+    /// a scale; one of the predicted one has the joints' in common with it, the other way round.
     pub fn displacement(&self, row: usize) -> Vector3<f64> {
         match &self.recording.targets {
             Targets::Points(points) => points
                 .get(row)
-                .map(|point| self.recording.device(row).inverse().point(&(point - self.misread[row])))
+                .map(|point| self.recording.device(row).inverse().point(&(point - 0.5 * self.left[row])))
                 .unwrap_or_default(),
             Targets::Sockets(_) => Vector3::zeros(),
         }
     }
 
-    /// How far `left` is from what is known of the errors of the points: root mean square of a
-    /// coordinate, m.
-    pub fn misread_otherwise(&self, left: &[Vector3<f64>]) -> f64 {
-        let squares: f64 =
-            self.misread.iter().zip(left).map(|(one, other)| (one - other).norm_squared()).sum();
-        (squares / (3 * left.len()).max(1) as f64).sqrt()
+    /// True where clamps show displacements that are well beyond the scatter: of others nobody
+    /// knows what they were, so that nothing in proportion to them can be told.
+    pub fn shows_displacements(&self) -> bool {
+        if self.has_sockets() || self.recording.groups.iter().all(|group| group.name.is_tracked()) {
+            return false;
+        }
+        let rows = 0..self.configurations.len();
+        let shown: Vec<Vector3<f64>> = rows.map(|row| self.displacement(row)).collect();
+        let mean = shown.iter().sum::<Vector3<f64>>() / shown.len().max(1) as f64;
+        let square: f64 = shown.iter().map(|shown| (shown - mean).norm_squared()).sum();
+        let scatter: f64 = self.left.iter().map(|left| left.norm_squared()).sum();
+        !self.is_second_look || scatter < MOST_COMMON * square
+    }
+
+    /// What a first look has left of each row, m in {W}; `None` before that.
+    pub fn left_of_rows(&self) -> Option<&[Vector3<f64>]> {
+        self.is_second_look.then_some(&self.left[..])
     }
 
     /// How far a row is off, in noises of its group.

@@ -13,7 +13,7 @@ use super::curve::{AXES, MOST, SIZE, cosine, curve, scaled};
 
 /// A curve for each axis along which displacements differ.
 pub(super) fn all(context: &Context) -> Vec<Entry> {
-    match is_of_clamps(context) {
+    match is_of_clamps(context) && context.shows_displacements() {
         true => (0..3).filter_map(|axis| along(context, axis)).collect(),
         false => Vec::new(),
     }

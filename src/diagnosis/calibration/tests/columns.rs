@@ -104,8 +104,8 @@ fn columns_are_what_a_changed_robot_does() {
             Box::new(move |r, row, v| {
                 let device = &recording.groups[recording.rows[row].group].device;
                 let Targets::Points(points) = &recording.targets else { panic!("no points") };
-                // less the error of the reading, as far as the calibration shows it
-                let point = points[row] + deviations[row];
+                // half way from the recorded to the predicted one
+                let point = points[row] + 0.5 * deviations[row];
                 let pull = device.rotation * device.inverse().point(&point) * v;
                 bend(r, pull);
                 r.loads.tip_force += pull;

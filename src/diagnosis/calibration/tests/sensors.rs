@@ -73,6 +73,19 @@ fn the_error_of_a_reading_is_no_scale() {
     }
 }
 
+/// Neither is that of a joint, which a column of what was predicted would have in common with it.
+#[test]
+fn the_error_of_an_angle_is_no_scale() {
+    for step in [0.01, 0.1] {
+        let mut campaign = recorded(&clamps(30), &|_| Vector3::zeros(), NOISE, 1);
+        campaign.measurements.joint_values.iter_mut().for_each(|q| {
+            *q = (q.to_degrees() / step).round() * f64::to_radians(step);
+        });
+        let names: Vec<&str> = diagnosed(&campaign).0.iter().map(|finding| finding.effect.name).collect();
+        assert!(names.is_empty(), "{step}: {names:?}");
+    }
+}
+
 #[test]
 fn cross_talk_is_named_with_its_axes_and_taken_out_of_the_points() {
     let campaign = clamps(30);

@@ -192,3 +192,19 @@ fn of_what_cannot_be_undone_no_residual_is_promised() {
     assert_reads("diagnose-stuck", answer.stdout.split("Parameters with").next().unwrap());
     assert!(answer.stdout.contains("All that follows is of the recording as it is."), "{}", answer.stdout);
 }
+
+/// A rod that weighs a thousandth: its reader says so, and so does who calibrates with it.
+#[test]
+fn what_is_odd_about_a_rod_is_said_of_its_campaign_too() {
+    let sandbox = Sandbox::new();
+    let rod = "rods/5.toml";
+    let text = sandbox.read(rod);
+    let light = text.replace("density_kg_m3 = 7930.0", "density_kg_m3 = 7.93");
+    assert_ne!(light, text);
+    sandbox.write(rod, &light);
+    for command in ["calibrate", "diagnose calibration", "compare"] {
+        let answer = sandbox.run(&format!("{command} {CAMPAIGN}"));
+        let expected = "5.toml: `material.steel.density_kg_m3` is 7.930 kg/m³";
+        assert!(answer.stderr.contains(expected), "{command}: {}", answer.stderr);
+    }
+}

@@ -156,7 +156,7 @@ impl Reader<'_> {
         let (robot, robot_file) = self.robot(raw)?;
         let constraints = parameter_constraints(self.toml, &raw.parameters, &raw.prior, robot.joints.len())?;
         let rod = match &raw.rod {
-            Some(name) => Some(self.named("rod", name).and_then(|n| Rod::from_toml(&n.file, &n.text))?),
+            Some(name) => Some(self.rod(name)?),
             None => None,
         };
         let readings = match &raw.rig {
@@ -232,6 +232,16 @@ impl Reader<'_> {
     }
 
     /// The file that `name`, the value of `key`, stands for.
+    /// A rod, and what its file's reader warns of.
+    fn rod(&mut self, name: &Spanned<String>) -> Result<Rod> {
+        let Named { file, text } = self.named("rod", name)?;
+        let rod = Rod::from_toml(&file, &text)?;
+        let of_rod =
+            |warning: &crate::rod::Warning| Warning::Rod { file: file.clone(), warning: warning.clone() };
+        self.warnings.extend(rod.warnings.iter().map(of_rod));
+        Ok(rod)
+    }
+
     fn named(&self, key: &str, name: &Spanned<String>) -> Result<Named> {
         // every error of that file repeats it
         if name.get_ref().len() > LONGEST_NAME {

@@ -10,6 +10,13 @@ use crate::units::{DEG, MM, significant};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
+    /// Something is odd about the rod's file.
+    Rod {
+        /// The file.
+        file: String,
+        /// What is odd.
+        warning: crate::rod::Warning,
+    },
     /// The numbers of a file were read with decimal commas.
     DecimalCommas {
         /// The file.
@@ -171,6 +178,7 @@ impl fmt::Display for Warning {
                 "{count} of {rows} validation poses are measurement poses too (pose {pose} first): \
                  the validation is not independent"
             ),
+            Warning::Rod { file, warning } => write!(f, "{file}: {warning}"),
             Warning::UnusedClamp { id } => write!(f, "no row was measured in clamp {id}"),
             Warning::NoDistance { file } => write!(
                 f,

@@ -83,7 +83,7 @@ pub fn diagnose_calibrated<'c>(
         let tails = if look.weights.is_none() { tails::weights(&prepared, &hypothesis, &left) } else { None };
         let moved_after = moved_after(&prepared, &hypothesis);
         let is_in_place = moved_after.iter().all(|row| look.moved_after.contains(row));
-        // whose the scatter is counts for all that is in proportion to the readings of devices
+        // clamps get a second look: what is left says how well displacements are known
         let is_read = prepared.context.left_of_rows().is_some() || !is_of_clamps(&prepared.context);
         if about.is_none() && is_equal && tails.is_none() && is_in_place && is_read {
             break;
@@ -158,8 +158,8 @@ fn moved_after(prepared: &Prepared, hypothesis: &Hypothesis) -> Vec<usize> {
 
 /// So many times a search begins anew about the robot that is left beside what was found, with the
 /// scatter that its clamps show then, with what poses count that are no farther out than the tails
-/// of the others, with every row near to one after which something moved, with what is known of the
-/// errors of readings.
+/// of the others, with every row near to one after which something moved, and with displacements
+/// corrected by what is left of them.
 const ROUNDS: usize = 2;
 
 /// Something that happened while the poses were recorded.

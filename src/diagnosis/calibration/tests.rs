@@ -49,14 +49,18 @@ fn clamps(poses_per_clamp: usize) -> Campaign {
 }
 
 fn simulated(poses_per_clamp: usize) -> Campaign {
+    with_rods(ROD, ROD, Plan { poses_per_clamp, sensor_noise: 0.0, repeatability: 0.0, ..Plan::default() })
+}
+
+/// A campaign that was recorded with the rod `actual` and has the file `stated`.
+fn with_rods(actual: &str, stated: &str, plan: Plan) -> Campaign {
     let robot = Robot::from_text("tx90.toml", ROBOT, None, None).unwrap();
-    let rod = Rod::from_toml("rod", ROD).unwrap();
+    let rod = Rod::from_toml("rod", actual).unwrap();
     let model = Compliance::of_model(&rod, &crate::beam::Physics::default(), DEFAULT_ELEMENTS).unwrap();
-    let plan = Plan { poses_per_clamp, sensor_noise: 0.0, repeatability: 0.0, ..Plan::default() };
     let simulation = simulate(&robot, &rod, &model, &plan).unwrap();
     let files = campaign_files(&simulation, "builtin:tx90", "rod.toml");
     let find = |wanted: &str| match wanted {
-        "rod.toml" => ROD.to_owned(),
+        "rod.toml" => stated.to_owned(),
         _ => files.iter().find(|(name, _)| name == wanted).unwrap().1.clone(),
     };
     Campaign::from_texts("campaign.toml", &find("campaign.toml"), &|name| Ok(find(name))).unwrap()

@@ -130,7 +130,8 @@ fn springs(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         return Vec::new();
     }
     if !context.shows_displacements() {
-        lacks.push(lack(&CONTACT_SPRING, "displacements are no larger than the scatter"));
+        lacks
+            .push(lack(&CONTACT_SPRING, "the displacements vary by less than some three times what is left"));
         return Vec::new();
     }
     let displacement = |row: usize| context.recording.device(row).rotation * context.displacement(row);

@@ -43,7 +43,7 @@ pub static SENSOR_SCALE: CalibrationEffect = CalibrationEffect {
             (&CROSS[1], "shown along y per true displacement along each axis"),
             (&CROSS[2], "shown along z per true displacement along each axis"),
         ],
-        needs: "clamps, and displacements that differ",
+        needs: "clamps, and displacements that vary by three times the scatter",
         cause: "the scale of the device's displacement sensors",
         cause_at: |location| format!("the scale of the displacement sensors ({location})"),
         written_to: WrittenTo::Recording,
@@ -67,7 +67,7 @@ fn devices(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         return Vec::new();
     }
     if !context.shows_displacements() {
-        lacks.push(lack(&SENSOR_SCALE, "displacements are no larger than the scatter"));
+        lacks.push(lack(&SENSOR_SCALE, "the displacements vary by less than some three times what is left"));
         return Vec::new();
     }
     let recording = context.recording;

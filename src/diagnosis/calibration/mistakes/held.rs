@@ -34,8 +34,8 @@ pub(super) struct Held {
     pub log_odds: f64,
 }
 
-/// All axes of devices or trackers that stood still for a while or were at their limits; joints may
-/// be meant to stand still.
+/// All axes of devices or trackers that stood still for a while or were at their limits. A joint
+/// that does not move may be intended.
 pub(super) fn held(draft: &Draft) -> Vec<Held> {
     let of_axis = |axis: usize| -> Vec<f64> { draft.seen.iter().map(|seen| seen[axis]).collect() };
     let axes = 0..if draft.has_sockets() { 0 } else { 3 };

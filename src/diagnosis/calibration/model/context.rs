@@ -14,8 +14,8 @@ use crate::error::Result;
 use crate::inference::Pattern;
 use crate::robot::{Body, Effect, Motion, Setup};
 
-/// Share of the squares of displacements that the scatter may have for the displacements to be
-/// known: a scale that is off by a twentieth is then not told from whose the scatter is.
+/// Largest ratio of the squares of what is left to those of the displacements: at this ratio a
+/// scale error of 5 % is indistinguishable from scatter of the readings or of the joints.
 const MOST_COMMON: f64 = 0.1;
 
 /// All that effects need to know of a campaign and its calibration.
@@ -243,8 +243,8 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// True where clamps show displacements that are well beyond the scatter: of others nobody
-    /// knows what they were, so that nothing in proportion to them can be told.
+    /// True where clamps show displacements that vary by more than the scatter: otherwise the true
+    /// displacement is unknown, and so is every effect in proportion to it.
     pub fn shows_displacements(&self) -> bool {
         if self.has_sockets() || self.recording.groups.iter().all(|group| group.name.is_tracked()) {
             return false;

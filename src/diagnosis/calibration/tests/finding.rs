@@ -172,22 +172,8 @@ fn the_way_to_the_first_pose_is_unknown() {
 
 /// A campaign that was recorded with the rod `actual` and has the file of [`ROD`].
 fn with_rod(actual: &str, seed: u64) -> Campaign {
+    assert_ne!(actual, ROD);
     with_rods(actual, ROD, Plan { poses_per_clamp: 25, seed, ..Plan::default() })
-}
-
-/// The same with another file and plan.
-fn with_rods(actual: &str, stated: &str, plan: Plan) -> Campaign {
-    assert_ne!(actual, stated);
-    let robot = Robot::from_text("tx90.toml", ROBOT, None, None).unwrap();
-    let rod = Rod::from_toml("rod", actual).unwrap();
-    let model = Compliance::of_model(&rod, &crate::beam::Physics::default(), DEFAULT_ELEMENTS).unwrap();
-    let simulation = simulate(&robot, &rod, &model, &plan).unwrap();
-    let files = campaign_files(&simulation, "builtin:tx90", "rod.toml");
-    let find = |wanted: &str| match wanted {
-        "rod.toml" => stated.to_owned(),
-        _ => files.iter().find(|(name, _)| name == wanted).unwrap().1.clone(),
-    };
-    Campaign::from_texts("campaign.toml", &find("campaign.toml"), &|name| Ok(find(name))).unwrap()
 }
 
 /// Beside half a kilogram that nobody stated the calibration makes a soft wrist, about which a mass

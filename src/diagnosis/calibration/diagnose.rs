@@ -11,7 +11,7 @@ pub mod tails;
 
 use self::arrival::unknown_arrival;
 use self::beside::{calibrated_beside, unequal};
-use self::hung::{beside_hidden_masses, may_bend, may_hide, with_rivals};
+use self::hung::{BesideMasses, beside_hidden_masses, may_bend, may_hide, with_rivals};
 use self::limits::{limits, noisy};
 use self::memory::check_memory;
 use self::prepared::{FirstLook, Prepared};
@@ -97,13 +97,16 @@ pub fn diagnose_calibrated<'c>(
     }
     let mut rivals = Vec::new();
     if may_hide_masses {
-        (prepared, rivals) = beside_hidden_masses(campaign, prepared, &look)?;
+        BesideMasses { prepared, rivals, .. } = beside_hidden_masses(campaign, prepared, &look)?;
     }
     let mut diagnosis = infer(&prepared.model, &prepared.evidence);
     // what nothing explains may be what such a mass has left
     if !may_hide_masses && diagnosis.discrepancy.is_some() && may_bend(&prepared) {
-        (prepared, rivals) = beside_hidden_masses(campaign, prepared, &look)?;
-        diagnosis = infer(&prepared.model, &prepared.evidence);
+        let is_another;
+        BesideMasses { prepared, rivals, is_another } = beside_hidden_masses(campaign, prepared, &look)?;
+        if is_another {
+            diagnosis = infer(&prepared.model, &prepared.evidence);
+        }
     }
     let arrival = unknown_arrival(&prepared.model, &mut diagnosis);
     let Prepared { model, evidence, absorbed, not_testable, context, .. } = prepared;

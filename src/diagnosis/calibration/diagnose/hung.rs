@@ -51,13 +51,21 @@ fn loads<'h>(model: &'h CalibrationModel, hypothesis: &'h Hypothesis) -> impl It
     hypothesis.terms.iter().filter(|term| pulls(model.terms.candidates[term.candidate].effect))
 }
 
-/// The same about the robot beside a mass that the calibration has hidden, where the poses are more
-/// probable there; and what is found about the others that are about as probable.
+/// The most probable of a robot and of those beside a mass that its calibration has hidden.
+pub struct BesideMasses<'c> {
+    pub prepared: Prepared<'c>,
+    /// What is found about the others that are about as probable.
+    pub rivals: Vec<Rival>,
+    /// False where it is the robot as it was calibrated.
+    pub is_another: bool,
+}
+
+/// Compares a robot with those beside a mass that the calibration has hidden.
 pub fn beside_hidden_masses<'c>(
     campaign: &'c Campaign,
     prepared: Prepared<'c>,
     look: &FirstLook,
-) -> Result<(Prepared<'c>, Vec<Rival>)> {
+) -> Result<BesideMasses<'c>> {
     let first = sketch(&prepared.model, &prepared.evidence);
     let robots = beside_masses(&prepared)?;
     let mut found = vec![(prepared, first)];
@@ -82,7 +90,7 @@ pub fn beside_hidden_masses<'c>(
     };
     let rivals = near.flatten().filter(is_rival);
     let rivals = rivals.map(|(effect, location, odds)| Rival::without_term(effect, location, odds)).collect();
-    Ok((prepared, rivals))
+    Ok(BesideMasses { prepared, rivals, is_another: best > 0 })
 }
 
 /// What pulls or bends of what was found about a robot.

@@ -231,7 +231,6 @@ impl Reader<'_> {
         Ok(campaign)
     }
 
-    /// The file that `name`, the value of `key`, stands for.
     /// A rod, and what its file's reader warns of.
     fn rod(&mut self, name: &Spanned<String>) -> Result<Rod> {
         let Named { file, text } = self.named("rod", name)?;
@@ -242,6 +241,7 @@ impl Reader<'_> {
         Ok(rod)
     }
 
+    /// The file that `name`, the value of `key`, stands for.
     fn named(&self, key: &str, name: &Spanned<String>) -> Result<Named> {
         // every error of that file repeats it
         if name.get_ref().len() > LONGEST_NAME {

@@ -73,6 +73,19 @@ fn the_error_of_a_reading_is_no_scale() {
     }
 }
 
+/// Half way between the two is right where half of the scatter is the readings'. Where all of it is,
+/// what is left of their error in the column is a number of its own, or it would be a scale or a spring.
+#[test]
+fn scatter_that_is_all_of_the_readings_is_no_scale() {
+    let campaign = clamps(200);
+    for seed in [1, 2] {
+        let names: Vec<String> = (diagnosed(&noisy(&campaign, 34.0 * UM, seed)).0.iter())
+            .map(|finding| format!("{} {}", finding.effect, finding.location))
+            .collect();
+        assert!(names.is_empty(), "seed {seed}: {names:?}");
+    }
+}
+
 /// Neither is that of a joint, which a column of what was predicted would have in common with it.
 #[test]
 fn the_error_of_an_angle_is_no_scale() {

@@ -57,9 +57,13 @@ fn rows_displaced_from_some_row_on() {
 /// A fiftieth of a degree slips by itself: that is an event, and left to the effects.
 #[test]
 fn nobody_makes_a_step_of_a_fiftieth_of_a_degree() {
-    let stepped_by = |degrees: f64| in_rows(&tracked(60, 7), 0..29, |q| q[1] += degrees * DEG);
-    assert_eq!(found(&stepped_by(0.022)), []);
-    assert_eq!(found(&stepped_by(0.5)), one("offset_mistake", "q2_deg, from pose 1 to pose 29"));
+    let (half, fifth) = (0..29, 48..60);
+    for rows in [half, fifth] {
+        let by = |degrees: f64| in_rows(&tracked(60, 7), rows.clone(), |q| q[1] += degrees * DEG);
+        assert_eq!(found(&by(0.022)), []);
+        let place = format!("q2_deg, from pose {} to pose {}", rows.start + 1, rows.end);
+        assert_eq!(found(&by(0.5)), one("offset_mistake", &place));
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ use super::identifiability::{MOST_SCATTER, UnidentifiedDirection, plausible_rang
 use super::result::Calibration;
 use super::warning::Warning;
 use crate::robot::{Effect, Parameter, ParameterGroup};
+use crate::rod::Rod;
 
 /// All that apply.
 pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Calibration) -> Vec<Warning> {
@@ -52,7 +53,18 @@ pub(super) fn all(campaign: &Campaign, recording: &Recording, calibration: &Cali
             .then_some(Warning::Implausible { parameter: estimate.parameter, correction })
     }));
     warnings.extend(far_from_drawing(calibration, guessed));
+    warnings.extend(campaign.rod.as_ref().and_then(|rod| tip_elsewhere(rod, calibration)));
     warnings
+}
+
+/// A share of a rod's length by which no drawing and no mounting is off.
+const OFF_TIP: f64 = 0.05;
+
+/// Where the calibrated tip is not the rod's.
+fn tip_elsewhere(rod: &Rod, calibration: &Calibration) -> Option<Warning> {
+    let (calibrated, of_rod) = (calibration.setup.tool, rod.tip());
+    let is_far = (calibrated - of_rod).norm() > OFF_TIP * rod.length().max(calibrated.norm());
+    is_far.then_some(Warning::TipElsewhere { calibrated, of_rod })
 }
 
 /// So many standard uncertainties of the robot file are worth a word.

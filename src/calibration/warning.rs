@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use nalgebra::Vector3;
+
 use super::identifiability::MOST_SCATTER;
 use crate::robot::Parameter;
 use crate::units::{MM, UM, significant};
@@ -82,6 +84,13 @@ pub enum Warning {
         correction: f64,
         /// Its standard uncertainty by the file, SI.
         standard_uncertainty: f64,
+    },
+    /// The tip was found far from where the rod's file has it.
+    TipElsewhere {
+        /// As calibrated, in {T}, m.
+        calibrated: Vector3<f64>,
+        /// By the rod's file, in {T}, m.
+        of_rod: Vector3<f64>,
     },
     /// A rigid motion of all validation points cures most of their errors.
     ValidationMoved {
@@ -210,6 +219,20 @@ impl fmt::Display for Warning {
                     significant(correction / unit.si, 3),
                     unit.symbol,
                     significant((correction / standard_uncertainty).abs(), 2)
+                )
+            }
+            Warning::TipElsewhere { calibrated, of_rod } => {
+                let in_words = |tip: &Vector3<f64>| {
+                    let [x, y, z] = [0, 1, 2].map(|k| format!("{:.1}", tip[k] / MM));
+                    format!("[{x}, {y}, {z}] mm")
+                };
+                write!(
+                    f,
+                    "the tip is at {} of {{T}}, {} mm from where the rod's file has it ({}): is that the file of \
+                     this rod, and is the rod mounted as the file has it? Deflections are those of the file",
+                    in_words(calibrated),
+                    significant((calibrated - of_rod).norm() / MM, 3),
+                    in_words(of_rod)
                 )
             }
             Warning::ValidationMoved { before, after } => write!(

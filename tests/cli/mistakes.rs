@@ -208,3 +208,26 @@ fn what_is_odd_about_a_rod_is_said_of_its_campaign_too() {
         assert!(answer.stderr.contains(expected), "{command}: {}", answer.stderr);
     }
 }
+
+/// A rod whose second pipe is a tenth as long as the one that was mounted, and no other rod's file
+/// beside it.
+#[test]
+fn a_tip_far_from_where_the_rods_file_has_it_is_said() {
+    let sandbox = Sandbox::new();
+    let rod = "rods/5.toml";
+    let text = sandbox.read(rod);
+    let short = text.replace("l2_mm = 525.0", "l2_mm = 52.5");
+    assert_ne!(short, text);
+    for other in ["1", "2", "3", "4", "6"] {
+        std::fs::remove_file(sandbox.path().join(format!("rods/{other}.toml"))).unwrap();
+    }
+    for (rod_file, is_said) in [(text, false), (short, true)] {
+        sandbox.write(rod, &rod_file);
+        let calibrated = sandbox.run(&format!("calibrate {CAMPAIGN}"));
+        let diagnosed = sandbox.run(&format!("diagnose calibration {CAMPAIGN}"));
+        let expected = " mm from where the rod's file has it";
+        for said in [&calibrated.stderr, &diagnosed.stderr, &diagnosed.stdout.replace('\n', " ")] {
+            assert_eq!(said.contains(expected), is_said, "{said}");
+        }
+    }
+}

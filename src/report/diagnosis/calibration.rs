@@ -157,10 +157,18 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
     }
 }
 
-/// A number of the robot that the calibration has put far from its file: no error of the poses, but
-/// hardly what the file means.
+/// A number that the calibration has put far from the rod's or the robot's file: no error of the
+/// poses, but hardly what the file means.
 fn far_from_file(found: &CalibrationDiagnosis) -> Option<String> {
     let calibration = &found.model.calibration;
+    let of_tip = calibration.warnings.iter().find_map(|warning| match warning {
+        Warning::TipElsewhere { calibrated, of_rod } => Some((calibrated - of_rod).norm()),
+        _ => None,
+    });
+    if let Some(off) = of_tip {
+        let off = significant(off / MM, 3);
+        return Some(format!("The tip is {off} mm from where the rod's file has it."));
+    }
     let known = &calibration.setup.robot.standard_uncertainty;
     let far = calibration.warnings.iter().filter_map(|warning| match warning {
         Warning::FarFromDrawing { parameter, correction, .. }

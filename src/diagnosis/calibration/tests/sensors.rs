@@ -73,8 +73,9 @@ fn the_error_of_a_reading_is_no_scale() {
     }
 }
 
-/// Half way between the two is right where half of the scatter is the readings'. Where all of it is,
-/// what is left of their error in the column is a number of its own, or it would be a scale or a spring.
+/// Half way between the two is right where half of the scatter is the readings'. Where all of it
+/// is, what is left of their error in the column is a number of its own, or it would be a scale or
+/// a spring.
 #[test]
 fn scatter_that_is_all_of_the_readings_is_no_scale() {
     let campaign = clamps(200);

@@ -8,6 +8,7 @@ pub(crate) mod constants;
 pub(crate) mod file;
 pub mod law;
 mod nominal;
+mod sleeve;
 mod uncertainty;
 mod warnings;
 mod write;
@@ -52,10 +53,12 @@ pub struct Rod<T = f64> {
     pub pipe2: Pipe<T>,
     /// Ball and ball holder, lumped at the tip, kg.
     pub tip_mass: T,
-    /// Sleeves and holders.
+    /// Rings and holders that carry no load.
     pub masses: Vec<LumpedMass<T>>,
     /// Bonded or threaded connections.
     pub joints: Vec<Joint<T>>,
+    /// Pipes over or in a stretch of a straight pipe that bear with it.
+    pub sleeves: Vec<Sleeve<T>>,
     /// What the beam model leaves out of it, as formulas.
     pub laws: Vec<RodLaw>,
     /// Largest load up to which the rod's maker or user calls it linear, N.
@@ -99,6 +102,19 @@ pub struct Joint<T = f64> {
     pub bending: T,
     /// Rotation about the centreline per moment about it, rad/(N·m).
     pub torsion: T,
+}
+
+/// A pipe that bears together with the straight pipe that it sits on, or in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sleeve<T = f64> {
+    /// Name, for people.
+    pub name: String,
+    /// Station where it begins, m.
+    pub from: T,
+    /// Station where it ends, m.
+    pub to: T,
+    /// Its own section and material.
+    pub pipe: Pipe<T>,
 }
 
 /// A thin bent pipe ovalises and is more flexible in bending than a beam, by a factor k ≥ 1.
@@ -179,6 +195,18 @@ impl<T: Number> Pipe<T> {
     }
 }
 
+impl<T: Number> Sleeve<T> {
+    /// Its length, m.
+    pub fn length(&self) -> T {
+        self.to - self.from
+    }
+
+    /// Its mass, kg.
+    pub fn mass(&self) -> T {
+        self.pipe.mass_per_length() * self.length()
+    }
+}
+
 impl<T: Number> Rod<T> {
     /// Angle the centreline turns through in the bend, π − γ, rad.
     pub fn turn(&self) -> T {
@@ -210,11 +238,12 @@ impl<T: Number> Rod<T> {
         self.bend_end() + self.l2 - self.tangent_length()
     }
 
-    /// Mass of pipes, bend, lumped masses and tip, kg.
+    /// Mass of pipes, bend, sleeves, lumped masses and tip, kg.
     pub fn mass(&self) -> T {
         self.pipe1.mass_per_length() * self.bend_start()
             + self.bend.mass_per_length() * self.arc_length()
             + self.pipe2.mass_per_length() * (self.length() - self.bend_end())
+            + self.sleeves.iter().map(Sleeve::mass).sum::<T>()
             + self.masses.iter().map(|m| m.mass).sum::<T>()
             + self.tip_mass
     }
@@ -268,6 +297,8 @@ impl<T: Number> Rod<T> {
             let centroid = (self.point(start) + self.point(end)) * T::from(0.5) - across * sagitta;
             moment += centroid * (self.bend.mass_per_length() * self.arc_length());
         }
+        let middle = |sleeve: &Sleeve<T>| self.point((sleeve.from + sleeve.to) / 2.0);
+        moment += self.sleeves.iter().map(|s| middle(s) * s.mass()).sum::<Vector3<T>>();
         moment += self.masses.iter().map(|m| self.point(m.station) * m.mass).sum::<Vector3<T>>();
         moment += self.tip() * self.tip_mass;
         let mass = self.mass();

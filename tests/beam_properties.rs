@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;
 use rodcal::beam::{Chain, Load, Physics, Profile, RodModel};
 use rodcal::compliance::Compliance;
-use rodcal::rod::{Joint, LumpedMass, Pipe, Rod};
+use rodcal::rod::{Joint, LumpedMass, Pipe, Rod, Sleeve};
 use rodcal::{material::Material, section::Round};
 
 /// Relative to the largest entry of a block; observed 1e-14.
@@ -107,6 +107,14 @@ fn rod() -> impl Strategy<Value = Rod> {
             rod.bend = pipe(outer, wall / 2.0);
             let station = at * rod.length();
             rod.masses.push(LumpedMass { name: "ring".into(), station, mass: 0.05 });
+            let (from, to) = (rod.bend_end(), rod.length());
+            let collar = Pipe { section: Round::tube(outer, outer * 0.8).into(), ..rod.pipe1.clone() };
+            rod.sleeves.push(Sleeve {
+                name: "collar".into(),
+                from: from + 0.5 * at * (to - from),
+                to: from + (0.5 * at + 0.4) * (to - from),
+                pipe: collar,
+            });
             rod.joints.push(Joint { name: "sleeve".into(), station, bending: 1e-5, torsion: 2e-5 });
             rod
         },

@@ -39,6 +39,22 @@ pub struct Profile<T = f64> {
 }
 
 impl<T: Number> Profile<T> {
+    /// Two sections that share every strain: their stiffnesses add up.
+    pub fn beside(&self, other: &Profile<T>) -> Profile<T> {
+        // 1/(1/a + 1/b); what the physics leaves out is 0 in both
+        let both = |a: T, b: T| if (a + b).value() > 0.0 { a * b / (a + b) } else { T::zero() };
+        let pair = |a: [T; 2], b: [T; 2]| [both(a[0], b[0]), both(a[1], b[1])];
+        let sum = |a: [T; 2], b: [T; 2]| [a[0] + b[0], a[1] + b[1]];
+        Profile {
+            axial: both(self.axial, other.axial),
+            shear: pair(self.shear, other.shear),
+            bending: pair(self.bending, other.bending),
+            torsion: both(self.torsion, other.torsion),
+            mass_per_length: self.mass_per_length + other.mass_per_length,
+            rotary_inertia: sum(self.rotary_inertia, other.rotary_inertia),
+        }
+    }
+
     /// Flexibility per length to a force in local axes, 1/N.
     fn force(&self) -> Matrix3<T> {
         Matrix3::from_diagonal(&Vector3::new(self.shear[0], self.shear[1], self.axial))

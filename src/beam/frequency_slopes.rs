@@ -107,7 +107,8 @@ fn freedoms(mode: &NaturalMode) -> DMatrix<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rod::{BendFlexibility, Joint};
+    use crate::rod::{BendFlexibility, Joint, Pipe};
+    use crate::section::Round;
 
     /// Central difference of fourth order of the frequency of the same mesh.
     fn difference(rod: &Rod, number: &NominalNumber, elements: usize) -> f64 {
@@ -125,9 +126,14 @@ mod tests {
     fn slopes_are_those_of_differences() {
         let plain = Rod::read("rods/2.toml".as_ref()).unwrap();
         let joint = Joint { name: "glue".into(), station: 0.11, bending: 1e-4, torsion: 2e-4 };
+        let steel = crate::material::Material::isotropic("steel", 200e9, 0.3, 7900.0);
+        let collar = Pipe::new(Round::tube(0.06, 0.05), steel);
         let mut bent = plain.clone().with_bend(0.06, BendFlexibility::VonKarman).with_angle(1.9);
         bent.masses[0].station += 0.004;
-        for rod in [plain, bent.with_mass("ring", 0.31, 0.1).with_joint(joint)] {
+        for rod in [
+            plain,
+            bent.with_mass("ring", 0.31, 0.1).with_joint(joint).with_sleeve("collar", 0.4, 0.47, collar),
+        ] {
             let numbers = rod.numbers();
             let coarse = (FEW, rod.first_frequency_slopes(&numbers));
             let fine = (ELEMENTS, rod.natural_frequency_slopes(&numbers));

@@ -23,7 +23,9 @@ pub struct Physics {
     pub bend_flexibility: bool,
     /// Rotational compliance of the joints.
     pub joints: bool,
-    /// Weight of sleeves and holders along the rod.
+    /// Stiffness and weight of the sleeves that bear with a pipe.
+    pub sleeves: bool,
+    /// Weight of rings and holders along the rod.
     pub masses: bool,
     /// Weight of ball and ball holder at the tip.
     pub tip_mass: bool,
@@ -37,6 +39,7 @@ impl Physics {
         bend: true,
         bend_flexibility: true,
         joints: true,
+        sleeves: true,
         masses: true,
         tip_mass: true,
     };
@@ -48,6 +51,7 @@ impl Physics {
         bend: false,
         bend_flexibility: false,
         joints: false,
+        sleeves: false,
         masses: false,
         tip_mass: false,
     };
@@ -83,7 +87,8 @@ pub struct RodModel<T = f64> {
 
 impl<T: Number> RodModel<T> {
     /// Meshes `rod` with `elements` elements (at least one for each part between two stations of
-    /// interest). The tip, the masses, the joints and the given `stations` (m) get a node.
+    /// interest). The tip, the masses, the joints, the ends of sleeves and the given `stations` (m)
+    /// get a node.
     ///
     /// The elements are shared out by length. Their number does not change the result: each element
     /// is exact.
@@ -109,7 +114,6 @@ impl<T: Number> RodModel<T> {
         chain.reserve(counts.iter().sum::<usize>() + rod.joints.len());
 
         let bend_factor = rod.bend_flexibility.factor(&rod.bend.section, rod.bend_radius);
-        let (pipe1, pipe2) = (physics.profile(&rod.pipe1, T::one()), physics.profile(&rod.pipe2, T::one()));
         let bend = physics.profile(&rod.bend, bend_factor);
         let bend_length = rod.bend_end() - rod.bend_start();
         let mut corner_ahead = rod.bend_radius.value() == 0.0;
@@ -117,7 +121,7 @@ impl<T: Number> RodModel<T> {
         for (ends, count) in cuts.windows(2).zip(counts) {
             let (length, middle) = (ends[1] - ends[0], (ends[0] + ends[1]) / 2.0);
             if middle.value() < rod.bend_start().value() {
-                chain.straight(&pipe1, length, count);
+                chain.straight(&physics.profile_at(&rod, middle), length, count);
             } else if middle.value() < rod.bend_end().value() {
                 // its share of the turn: the rounding of two stations over a tiny radius would turn
                 // all beyond it
@@ -126,7 +130,7 @@ impl<T: Number> RodModel<T> {
                 if std::mem::take(&mut corner_ahead) {
                     chain.turn(&about_y(rod.turn()));
                 }
-                chain.straight(&pipe2, length, count);
+                chain.straight(&physics.profile_at(&rod, middle), length, count);
             }
             place_features(&mut chain, &rod, ends[1]);
         }
@@ -189,8 +193,7 @@ impl Physics {
                     *station = start + (*station - start) * 2.0 * tangent / (end - start);
                 }
             };
-            rod.masses.iter_mut().for_each(|mass| shift(&mut mass.station));
-            rod.joints.iter_mut().for_each(|joint| shift(&mut joint.station));
+            rod.stations_mut().for_each(shift);
             rod.bend_radius = T::zero();
         }
         if !self.bend_flexibility {
@@ -199,6 +202,9 @@ impl Physics {
         if !self.joints {
             rod.joints.clear();
         }
+        if !self.sleeves {
+            rod.sleeves.clear();
+        }
         if !self.masses {
             rod.masses.clear();
         }
@@ -206,6 +212,13 @@ impl Physics {
             rod.tip_mass = T::zero();
         }
         rod
+    }
+
+    /// Flexibilities at a station (m) of a straight pipe under this physics, with its sleeves.
+    pub(super) fn profile_at<T: Number>(&self, rod: &Rod<T>, station: T) -> Profile<T> {
+        let mut bearing = rod.bearing_at(station).map(|pipe| self.profile(pipe, T::one()));
+        let pipe = bearing.next().unwrap_or_else(|| self.profile(&rod.pipe2, T::one()));
+        bearing.fold(pipe, |whole, sleeve| whole.beside(&sleeve))
     }
 
     /// Flexibilities of a pipe under this physics, its bending flexibility times `bend_factor`.
@@ -258,6 +271,7 @@ fn cuts<T: Number>(rod: &Rod<T>, stations: &[T]) -> Result<Vec<T>> {
     let mut cuts = vec![T::zero(), rod.bend_start(), rod.bend_end(), length];
     cuts.extend(rod.masses.iter().map(|mass| mass.station));
     cuts.extend(rod.joints.iter().map(|joint| joint.station));
+    cuts.extend(rod.sleeves.iter().flat_map(|sleeve| [sleeve.from, sleeve.to]));
     for &station in stations {
         let (at, end) = (station.value(), length.value());
         if !(at >= 0.0 && at <= end + SAME_STATION) {

@@ -32,7 +32,7 @@ use crate::spatial::{cross, product, skew};
 #[derive(Debug, Clone)]
 pub struct TipSolver<T: Number = f64> {
     pub(super) chain: Chain<T>,
-    /// Where masses and joints sit.
+    /// Where masses and joints sit, sleeves begin and end.
     cuts: Vec<T>,
     /// The last arc, its radius and angle: rods that are compared often have the same bend.
     arc: Option<(Profile<T>, [T; 2], Shape<T>)>,
@@ -65,16 +65,17 @@ impl<T: Number> TipSolver<T> {
         self.cuts.clear();
         self.cuts.extend(rod.masses.iter().map(|mass| mass.station));
         self.cuts.extend(rod.joints.iter().map(|joint| joint.station));
+        self.cuts.extend(rod.sleeves.iter().flat_map(|sleeve| [sleeve.from, sleeve.to]));
         self.cuts.sort_unstable_by(|a, b| a.value().total_cmp(&b.value()));
         place_features(&mut self.chain, rod, T::zero());
-        let pipe1 = physics.profile(&rod.pipe1, T::one());
-        self.part(rod, [T::zero(), start], rod.l1 - tangent, |solver, length| {
-            solver.chain.straight(&pipe1, length, count);
-        });
+        let straight = |solver: &mut TipSolver<T>, length: T, middle: T| {
+            solver.chain.straight(&physics.profile_at(rod, middle), length, count);
+        };
+        self.part(rod, [T::zero(), start], rod.l1 - tangent, straight);
         let (radius, turn) = (rod.bend_radius, rod.turn());
         if radius.value() > 0.0 && turn.value() > 0.0 {
             let profile = physics.profile(&rod.bend, rod.bend_flexibility.factor(&rod.bend.section, radius));
-            self.part(rod, [start, end], turn, |solver, angle| {
+            self.part(rod, [start, end], turn, |solver, angle, _| {
                 let step = angle / count as f64;
                 let shape = match &solver.arc {
                     Some((own, key, shape)) if *own == profile && *key == [radius, step] => *shape,
@@ -86,16 +87,19 @@ impl<T: Number> TipSolver<T> {
         } else {
             self.chain.turn(&about_y(turn));
         }
-        let pipe2 = physics.profile(&rod.pipe2, T::one());
-        self.part(rod, [end, rod.length()], rod.l2 - tangent, |solver, length| {
-            solver.chain.straight(&pipe2, length, count);
-        });
+        self.part(rod, [end, rod.length()], rod.l2 - tangent, straight);
         self.chain.mass(rod.tip_mass);
     }
 
     /// One part of the rod between two stations, cut where something sits; `size` is its length, or
-    /// its angle, which `lay` gets piece by piece.
-    fn part(&mut self, rod: &Rod<T>, [from, to]: [T; 2], size: T, mut lay: impl FnMut(&mut TipSolver<T>, T)) {
+    /// its angle, which `lay` gets piece by piece, each with the station of its middle.
+    fn part(
+        &mut self,
+        rod: &Rod<T>,
+        [from, to]: [T; 2],
+        size: T,
+        mut lay: impl FnMut(&mut TipSolver<T>, T, T),
+    ) {
         let is_inside =
             |at: T| at.value() > from.value() + SAME_STATION && at.value() < to.value() - SAME_STATION;
         let (mut last, mut left) = (from, size);
@@ -103,12 +107,12 @@ impl<T: Number> TipSolver<T> {
             let at = self.cuts[k];
             if is_inside(at) && at.value() > last.value() + SAME_STATION {
                 let piece = size * ((at - last) / (to - from));
-                lay(self, piece);
+                lay(self, piece, (last + at) / 2.0);
                 place_features(&mut self.chain, rod, at);
                 (last, left) = (at, left - piece);
             }
         }
-        lay(self, left);
+        lay(self, left, (last + to) / 2.0);
         // a sharp corner has one station at its two ends
         if to.value() - from.value() > SAME_STATION {
             place_features(&mut self.chain, rod, to);
@@ -153,7 +157,8 @@ impl<T: Number> Chain<T> {
 mod tests {
     use super::*;
     use crate::beam::{Load, RodModel};
-    use crate::rod::{BendFlexibility, Joint};
+    use crate::rod::{BendFlexibility, Joint, Pipe};
+    use crate::section::Round;
     use crate::units::DEG;
 
     /// Also with masses and joints, wherever they sit.
@@ -164,6 +169,7 @@ mod tests {
         let bent = plain.clone().with_bend(0.06, BendFlexibility::VonKarman);
         let joint =
             |name: &str, station: f64| Joint { name: name.into(), station, bending: 1e-4, torsion: 2e-4 };
+        let collar = |outer: f64| Pipe::new(Round::tube(outer, outer - 0.01), plain.pipe1.material.clone());
         let rods = [
             plain.clone(),
             plain.clone().with_angle(120.0 * DEG),
@@ -178,6 +184,13 @@ mod tests {
                 .with_joint(joint("within", 0.5 * (bent.bend_start() + bent.bend_end())))
                 .with_mass("beyond", bent.bend_end(), 0.2),
             plain.clone().with_joint(joint("corner", plain.l1)).with_mass("ring", plain.l1, 0.1),
+            // sleeves from the flange, up to the corner or the bend, at a joint, over one another
+            plain.clone().with_sleeve("foot", 0.0, 0.05, collar(0.06)).with_joint(joint("a", 0.05)),
+            plain.clone().with_sleeve("a", 0.1, plain.l1, collar(0.06)),
+            bent.clone()
+                .with_sleeve("a", 0.02, bent.bend_start(), collar(0.06))
+                .with_sleeve("b", 0.3, bent.length(), collar(0.06))
+                .with_sleeve("over", 0.35, 0.4, collar(0.07)),
         ];
         let mut solver = TipSolver::default();
         // in turn, so that what is kept of one rod would be seen in the next

@@ -212,17 +212,17 @@ impl Acting {
 /// Σ m·(x_m − x) of all that is beyond a station, kg·m.
 fn static_moment(rod: &Rod, station: f64) -> Vector3<f64> {
     const PARTS: usize = 64;
-    let (start, end, length) = (rod.bend_start(), rod.bend_end(), rod.length());
     let origin = rod.point(station);
-    // straight pieces by their middle, arcs by many
-    let pieces = [(&rod.pipe1, 0.0, start, 1), (&rod.bend, start, end, PARTS), (&rod.pipe2, end, length, 1)];
+    let is_arc = |middle: f64| (rod.bend_start()..rod.bend_end()).contains(&middle);
     let mut moment = Vector3::zeros();
-    for (pipe, from, to, parts) in pieces {
+    for [from, to] in rod.stretches() {
         let from = from.max(station);
+        // straight pieces by their middle, arcs by many
+        let parts = if is_arc(0.5 * (from + to)) { PARTS } else { 1 };
         let step = (to - from) / parts as f64;
-        for k in (0..parts).filter(|_| step > 0.0) {
-            let middle = rod.point(from + (k as f64 + 0.5) * step);
-            moment += (middle - origin) * (pipe.mass_per_length() * step);
+        for middle in (0..parts).filter(|_| step > 0.0).map(|k| from + (k as f64 + 0.5) * step) {
+            let mass: f64 = rod.bearing_at(middle).map(|pipe| pipe.mass_per_length() * step).sum();
+            moment += (rod.point(middle) - origin) * mass;
         }
     }
     for mass in rod.masses.iter().filter(|mass| mass.station > station) {
@@ -236,7 +236,8 @@ mod tests {
     use super::*;
     use crate::beam::Physics;
     use crate::compliance::{Compliance, DEFAULT_ELEMENTS};
-    use crate::rod::{Joint, LawConstant};
+    use crate::rod::{Joint, LawConstant, Pipe};
+    use crate::section::Round;
 
     fn rod() -> Rod {
         Rod::from_toml("rod", include_str!("../../rods/5.toml")).unwrap().with_mass("ring", 0.3, 0.2)
@@ -252,6 +253,21 @@ mod tests {
         };
         let formula = format!("c*{}", variable.symbol());
         RodLaw::new(place, variable, formula, vec![constant], (0.0, 10.0)).unwrap()
+    }
+
+    /// A sleeve weighs on what is before it, and by what of it is beyond, on what is within.
+    #[test]
+    fn what_is_beyond_a_station_has_its_moment() {
+        let bare = rod();
+        let collar = Pipe::new(Round::tube(0.036, 0.032), bare.pipe1.material.clone());
+        let sleeved = bare.clone().with_sleeve("collar", 0.25, 0.35, collar.clone());
+        let more = |station: f64| static_moment(&sleeved, station) - static_moment(&bare, station);
+        for (station, from) in [(0.05, 0.25), (0.25, 0.25), (0.28, 0.28), (0.36, 0.36)] {
+            let length = f64::max(0.35 - from, 0.0);
+            let middle = bare.point(0.5 * (from + 0.35)) - bare.point(station);
+            let expected = middle * (collar.mass_per_length() * length);
+            assert!((more(station) - expected).norm() < 1e-15, "{station}");
+        }
     }
 
     /// A turn that is proportional to the moment is a compliant joint, under loads and weight.

@@ -76,7 +76,8 @@ pub fn sensitivities(rod: &Rod, physics: &Physics, contact_force: f64) -> Result
         }))
     });
     let mut all: Vec<Sensitivity> = all.into_iter().filter_map(Result::transpose).collect::<Result<_>>()?;
-    for material in [&rod.pipe1, &rod.bend, &rod.pipe2].map(|pipe| &pipe.material) {
+    let pipes = [&rod.pipe1, &rod.bend, &rod.pipe2].into_iter();
+    for material in pipes.chain(rod.sleeves.iter().map(|sleeve| &sleeve.pipe)).map(|pipe| &pipe.material) {
         if material.is_shear_modulus_derived {
             along_with_shear_modulus(&mut all, material);
         }
@@ -148,8 +149,8 @@ mod tests {
 
     use super::*;
     use crate::compliance::paper_contact_force;
-    use crate::rod::{BendFlexibility, Joint};
-    use crate::section::{General, Rectangle};
+    use crate::rod::{BendFlexibility, Joint, Pipe};
+    use crate::section::{General, Rectangle, Round};
 
     /// Every kind of section, of bend, of feature: against central differences, to 1e-6.
     #[test]
@@ -160,6 +161,9 @@ mod tests {
             pipe.material.is_shear_modulus_derived = false;
         }
         let joint = Joint { name: "glue".into(), station: 0.11, bending: 1e-4, torsion: 2e-4 };
+        let mut steel = Material::isotropic("steel", 200e9, 0.3, 7900.0);
+        steel.is_shear_modulus_derived = false;
+        let collar = Pipe::new(Round::tube(0.06, 0.05), steel);
         let mut bent = plain.clone().with_bend(0.06, BendFlexibility::VonKarman).with_angle(1.9);
         // a mass at a joint has a kink there
         bent.masses[0].station += 0.004;
@@ -171,7 +175,13 @@ mod tests {
             General { area: 1e-4, iy: 3e-9, iz: 2e-9, torsion_constant: 4e-9, shear_coefficient: 0.5 }.into();
         let mut asme = plain.clone().with_bend(0.04, BendFlexibility::AsmeB313);
         asme.masses.clear();
-        for rod in [plain, bent.with_mass("ring", 0.31, 0.1).with_joint(joint), boxes, general, asme] {
+        for rod in [
+            plain,
+            bent.with_mass("ring", 0.31, 0.1).with_joint(joint).with_sleeve("collar", 0.4, 0.47, collar),
+            boxes,
+            general,
+            asme,
+        ] {
             let at = |rod: &Rod| {
                 let [force, weight] = RodModel::new(rod, &Physics::WHOLE, 1, &[]).unwrap().chain.tip_motion();
                 (Compliance { force, gravity: weight * STANDARD_GRAVITY }, rod.mass())

@@ -4,8 +4,9 @@
 //! The rod is an open chain, so that moments follow from statics alone. Under a weight of one g and
 //! the contact force, each along its own worst axis, a fibre of the section bears
 //! `σ = (|M_gᵀ v| g + |M_Fᵀ v| F)`, with v the fibre's distance from the axis over the second
-//! moment of area, and a round one `τ = M_t r/J` besides. What is compared is von Mises' stress
-//! `√(σ² + 3τ²)`.
+//! moment of area, and a round one `τ = M_t r/J` besides. Where a sleeve bears too, each of the two
+//! has the second moment of both in its own modulus, `Σ EI/E` (and `Σ GJ/G`). What is
+//! compared is von Mises' stress `√(σ² + 3τ²)`.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -65,7 +66,8 @@ const THIN: f64 = 0.1;
 /// As [`RodModel::new`].
 pub fn overload(rod: &Rod, contact_force: f64) -> Result<Option<Overload>> {
     let bears_all = |pipe: &&Pipe| pipe.material.yield_strength.is_none() && wall(pipe).is_none();
-    if [&rod.pipe1, &rod.bend, &rod.pipe2].iter().all(bears_all) {
+    let sleeves = rod.sleeves.iter().map(|sleeve| &sleeve.pipe);
+    if [&rod.pipe1, &rod.bend, &rod.pipe2].into_iter().chain(sleeves).all(|pipe| bears_all(&pipe)) {
         return Ok(None);
     }
     let RodModel { chain, .. } = &RodModel::new(rod, &Physics::default(), ELEMENTS, &[])?;
@@ -79,19 +81,17 @@ pub fn overload(rod: &Rod, contact_force: f64) -> Result<Option<Overload>> {
         let ends = [k, k + 1].map(|node| (chain.station(node), chain.position(node)));
         let Some(along) = (ends[1].1 - ends[0].1).try_normalize(1e-9) else { continue };
         let middle = (ends[0].0 + ends[1].0) / 2.0;
-        let pipe = match middle {
-            at if at < rod.bend_start() => &rod.pipe1,
-            at if at < rod.bend_end() => &rod.bend,
-            _ => &rod.pipe2,
-        };
-        let yields =
-            pipe.material.yield_strength.map(|limit| (limit, Strength::Material(pipe.material.name.clone())));
-        for ((station, _), node) in ends.iter().zip([k, k + 1]) {
-            let stress = stress(&pipe.section, &along, &moments(node));
-            for (limit, kind) in [yields.clone(), wall(pipe)].into_iter().flatten() {
-                let share = stress / limit;
-                if share > 1.0 && worst.as_ref().is_none_or(|(known, _)| share > *known) {
-                    worst = Some((share, Overload { stress, station: *station, limit, kind }));
+        for pipe in rod.bearing_at(middle) {
+            let whole = together(rod, middle, pipe);
+            let name = || Strength::Material(pipe.material.name.clone());
+            let yields = pipe.material.yield_strength.map(|limit| (limit, name()));
+            for ((station, _), node) in ends.iter().zip([k, k + 1]) {
+                let stress = stress(&pipe.section, &whole, &along, &moments(node));
+                for (limit, kind) in [yields.clone(), wall(pipe)].into_iter().flatten() {
+                    let share = stress / limit;
+                    if share > 1.0 && worst.as_ref().is_none_or(|(known, _)| share > *known) {
+                        worst = Some((share, Overload { stress, station: *station, limit, kind }));
+                    }
                 }
             }
         }
@@ -99,10 +99,27 @@ pub fn overload(rod: &Rod, contact_force: f64) -> Result<Option<Overload>> {
     Ok(worst.map(|(_, overload)| overload))
 }
 
+/// I_y, I_z and J of all that bears at a station (m), in the moduli of one of its pipes, m⁴.
+fn together(rod: &Rod, station: f64, pipe: &Pipe) -> [f64; 3] {
+    let mut whole = [0.0; 3];
+    for Pipe { section, material } in rod.bearing_at(station) {
+        let e = material.youngs_modulus / pipe.material.youngs_modulus;
+        let g = material.shear_modulus / pipe.material.shear_modulus;
+        let [iy, iz] = section.second_moments();
+        whole = [whole[0] + e * iy, whole[1] + e * iz, whole[2] + g * section.torsion_constant()];
+    }
+    whole
+}
+
 /// The largest stress of a section, Pa, under moments (N·m; column: axis of the load) that act
-/// along any axis each.
-fn stress(section: &Section, along: &Vector3<f64>, moments: &[Matrix3<f64>; 2]) -> f64 {
-    let (out_of_plane, [iy, iz]) = (Vector3::y(), section.second_moments());
+/// along any axis each, where I_y, I_z and J are those of all that bears there, m⁴.
+fn stress(
+    section: &Section,
+    [iy, iz, torsion_constant]: &[f64; 3],
+    along: &Vector3<f64>,
+    moments: &[Matrix3<f64>; 2],
+) -> f64 {
+    let out_of_plane = Vector3::y();
     let in_plane = along.cross(&out_of_plane);
     // largest over all directions of each load: |M_gᵀ v| + |M_Fᵀ v|
     let largest = |v: &Vector3<f64>| moments.iter().map(|moment| moment.tr_mul(v).norm()).sum::<f64>();
@@ -114,7 +131,7 @@ fn stress(section: &Section, along: &Vector3<f64>, moments: &[Matrix3<f64>; 2]) 
                 largest(&((out_of_plane * angle.cos() + in_plane * angle.sin()) * (radius / iy)))
             };
             let bending = (0..FIBRES).map(fibre).fold(0.0, f64::max);
-            let torsion = largest(&(along * (radius / section.torsion_constant())));
+            let torsion = largest(&(along * (radius / torsion_constant)));
             (bending * bending + 3.0 * torsion * torsion).sqrt()
         }
         // at its corners, by bending alone
@@ -153,6 +170,7 @@ fn wall(pipe: &Pipe) -> Option<(f64, Strength)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::Material;
     use crate::section::{Rectangle, Round};
     use approx::assert_relative_eq;
 
@@ -227,5 +245,32 @@ mod tests {
         let knocked = 1.0 - 0.731 * (1.0 - (-(1999.5f64).sqrt() / 16.0).exp());
         let expected = knocked * 193e9 / 1999.5 / (3.0 * (1.0 - nu * nu)).sqrt();
         assert_relative_eq!(found.limit, expected, max_relative = 1e-6);
+    }
+
+    /// What shares a load bears of it by its stiffness: the stress at the outside is that of the
+    /// one tube which both are, and a sleeve of half the modulus bears half of that strain.
+    #[test]
+    fn a_sleeve_bears_its_share() {
+        let steel = |strength: f64| {
+            let mut steel = Material::isotropic("steel", 193e9, 0.29, 0.0);
+            steel.yield_strength = Some(strength);
+            steel
+        };
+        let tube =
+            |outer: f64, inner: f64, strength: f64| Pipe::new(Round::tube(outer, inner), steel(strength));
+        let straight = |pipe: Pipe| Rod::new("rod", 0.1, 0.4, pipe).with_angle(std::f64::consts::PI);
+        let one = straight(tube(0.020, 0.012, 1.0));
+        let bears = |rod: &Rod| overload(rod, 2.0).unwrap().unwrap();
+        // the pipe inside bears anything
+        let sleeve = tube(0.020, 0.016, 1.0);
+        let both = straight(tube(0.016, 0.012, 1e12)).with_sleeve("all", 0.0, 0.1, sleeve.clone());
+        assert_relative_eq!(bears(&both).stress, bears(&one).stress, max_relative = 1e-9);
+        assert_eq!(bears(&both).station, 0.0);
+        let mut soft = both;
+        soft.sleeves[0].pipe.material.youngs_modulus *= 0.5;
+        let second = |outer: f64, inner: f64| Round::tube(outer, inner).second_moment();
+        let (inside, outside) = (second(0.016, 0.012), second(0.020, 0.016));
+        let expected = bears(&one).stress * 0.5 * (inside + outside) / (inside + 0.5 * outside);
+        assert_relative_eq!(bears(&soft).stress, expected, max_relative = 1e-9);
     }
 }

@@ -32,8 +32,8 @@ pub(super) fn stations(rod: &Rod) -> Vec<Station> {
     rod.masses.iter().map(mass).chain(rod.joints.iter().map(joint)).chain(tip).collect()
 }
 
-/// Pipe I, bend and pipe II; none where a section is known by its constants alone, for that has no
-/// sizes to draw.
+/// Pipe I, bend, pipe II and sleeves; none where a section is known by its constants alone, for
+/// that has no sizes to draw.
 fn tubes(rod: &Rod) -> Vec<Tube> {
     let (start, end, length) = (rod.bend_start(), rod.bend_end(), rod.length());
     let parts = [
@@ -41,17 +41,19 @@ fn tubes(rod: &Rod) -> Vec<Tube> {
         ("bend", &rod.bend, start, end),
         ("pipe II", &rod.pipe2, end, length),
     ];
-    let tube = |(name, pipe, from, to): (&str, &Pipe, f64, f64)| {
+    let sleeves = rod.sleeves.iter().map(|own| (own.name.as_str(), &own.pipe, own.from, own.to));
+    let tube = |(name, pipe, from, to): (&str, &Pipe, f64, f64), is_sleeve: bool| {
         let (outer_mm, inner_mm, size) = sizes(&pipe.section)?;
         // the bend's is mostly that of pipe I, and there is little room
-        let label = match name == "bend" && pipe.section == rod.pipe1.section {
+        let label = match !is_sleeve && name == "bend" && pipe.section == rod.pipe1.section {
             true => String::new(),
             false => format!("{name}, {size}, {}", pipe.material.name),
         };
-        Some(Tube { label, from_mm: from / MM, to_mm: to / MM, outer_mm, inner_mm })
+        Some(Tube { label, from_mm: from / MM, to_mm: to / MM, outer_mm, inner_mm, is_sleeve })
     };
     let there = parts.into_iter().filter(|(_, _, from, to)| to > from);
-    there.map(tube).collect::<Option<Vec<Tube>>>().unwrap_or_default()
+    let pipes = there.map(|part| tube(part, false));
+    pipes.chain(sleeves.map(|sleeve| tube(sleeve, true))).collect::<Option<Vec<Tube>>>().unwrap_or_default()
 }
 
 /// Outer and inner sizes in the rod's plane and across it (mm), and both in words.
@@ -87,7 +89,7 @@ fn sizes(section: &Section) -> Option<([f64; 2], [f64; 2], String)> {
 mod tests {
     use super::*;
     use crate::rod::BendFlexibility;
-    use crate::section::{General, Rectangle};
+    use crate::section::{General, Rectangle, Round};
 
     #[test]
     fn tubes_are_those_of_the_rod_file() {
@@ -105,6 +107,11 @@ mod tests {
         general.pipe2.section =
             General { area: 1e-4, iy: 3e-9, iz: 2e-9, torsion_constant: 4e-9, shear_coefficient: 0.5 }.into();
         assert!(drawing(&general).tubes.is_empty());
+        let collar = Pipe::new(Round::tube(0.06, 0.05), rod.pipe1.material.clone());
+        let sleeved = drawing(&rod.clone().with_sleeve("collar", 0.2, 0.25, collar));
+        let last = &sleeved.tubes[2];
+        assert_eq!((last.label.as_str(), last.is_sleeve), ("collar, Ø\u{a0}60 × 5\u{a0}mm, carbon", true));
+        assert!((last.from_mm - 200.0).abs() < 1e-9 && (last.to_mm - 250.0).abs() < 1e-9);
         let mut flat = rod;
         flat.pipe2.section = Rectangle::hollow(0.03, 0.02, 0.002).into();
         let tube = &drawing(&flat).tubes[1];

@@ -47,12 +47,7 @@ pub fn one_percent_more(rod: &Rod, slopes: &[(NominalNumber, Vec<f64>)], figures
         match number {
             NominalNumber::InnerDiameter(_) => {}
             NominalNumber::OuterDiameter(part) => {
-                let section = match part {
-                    Part::Pipe1 => &rod.pipe1.section,
-                    Part::Bend => &rod.bend.section,
-                    Part::Pipe2 => &rod.pipe2.section,
-                };
-                let Section::Round(round) = section else { continue };
+                let Some(Section::Round(round)) = rod.part(*part).map(|pipe| &pipe.section) else { continue };
                 if is_one_tube && *part == Part::Pipe2 {
                     continue;
                 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{BendFlexibility, Joint, LumpedMass, Pipe, Rod, StandardUncertainty};
+use super::{BendFlexibility, Joint, LumpedMass, Pipe, Rod, Sleeve, StandardUncertainty};
 use crate::error::{Error, Result};
 use crate::material::MaterialUncertainty;
 use crate::section::Section;
@@ -40,6 +40,7 @@ impl Rod {
             tip_mass: 0.0,
             masses: Vec::new(),
             joints: Vec::new(),
+            sleeves: Vec::new(),
             laws: Vec::new(),
             linear_range: None,
             standard_uncertainty: StandardUncertainty::default(),
@@ -53,7 +54,7 @@ impl Rod {
     }
 
     /// With an arc of `radius` (m, of the centreline) in place of the sharp corner. Stations beyond
-    /// it move: mount masses and joints after that.
+    /// it move: mount masses, joints and sleeves after that.
     pub fn with_bend(self, radius: f64, flexibility: BendFlexibility) -> Rod {
         Rod { bend_radius: radius, bend_flexibility: flexibility, ..self }
     }
@@ -68,9 +69,16 @@ impl Rod {
         Rod { tip_mass: mass, ..self }
     }
 
-    /// With a sleeve or a holder of `mass` (kg) at a `station` (m from the flange).
+    /// With a ring or a holder of `mass` (kg) at a `station` (m from the flange).
     pub fn with_mass(mut self, name: impl Into<String>, station: f64, mass: f64) -> Rod {
         self.masses.push(LumpedMass { name: name.into(), station, mass });
+        self
+    }
+
+    /// With a sleeve that bears with the straight pipe on or in which it sits, between two stations
+    /// (m from the flange).
+    pub fn with_sleeve(mut self, name: impl Into<String>, from: f64, to: f64, pipe: Pipe) -> Rod {
+        self.sleeves.push(Sleeve { name: name.into(), from, to, pipe });
         self
     }
 
@@ -86,15 +94,17 @@ impl Rod {
     /// [`Error::Argument`] for a length or a modulus that is not positive, a wall without
     /// thickness, an angle beyond 0 < γ ≤ π, a bend that does not fit between the pipes, a
     /// flexibility for round tubes on a bend that is none, a mass, a compliance or a standard
-    /// uncertainty that is negative, and a station that is not on the rod. Numbers that are not
-    /// finite are none of these.
+    /// uncertainty that is negative, a station that is not on the rod, and a sleeve that is not on
+    /// one straight pipe or whose wall is where that of another is. Numbers that are not finite are
+    /// none of these.
     pub fn checked(self) -> Result<Rod> {
         positive("l1", self.l1)?;
         positive("l2", self.l2)?;
         if !(self.gamma > 0.0 && self.gamma <= PI) {
             return Err(wrong("gamma", self.gamma, "an angle in rad, 0 < gamma <= π"));
         }
-        for pipe in [&self.pipe1, &self.bend, &self.pipe2] {
+        let sleeves = self.sleeves.iter().map(|sleeve| &sleeve.pipe);
+        for pipe in [&self.pipe1, &self.bend, &self.pipe2].into_iter().chain(sleeves) {
             check_section(&pipe.section)?;
             let material = &pipe.material;
             positive("youngs_modulus", material.youngs_modulus)?;
@@ -143,6 +153,20 @@ impl Rod {
             not_negative("bending", joint.bending)?;
             not_negative("torsion", joint.torsion)?;
             self.on_rod(joint.station)?;
+        }
+        for (k, sleeve) in self.sleeves.iter().enumerate() {
+            let Sleeve { name, from, to, pipe } = sleeve;
+            let refuse = |found, expected| Err(Error::Argument { name: "sleeve", found, expected });
+            if let Some(expected) = self.no_stretch(*from, *to) {
+                return refuse(format!("\"{name}\" from {:.3} to {:.3} mm", from / MM, to / MM), expected);
+            }
+            let before = Rod { sleeves: self.sleeves[..k].to_vec(), ..self.clone() };
+            if let Some(other) = before.in_the_way(&pipe.section, *from, *to) {
+                return refuse(
+                    format!("\"{name}\" in the wall of {other}"),
+                    "a tube over it or in it".into(),
+                );
+            }
         }
         Ok(self)
     }
@@ -235,6 +259,11 @@ mod tests {
     fn what_cannot_be_is_refused_by_name() {
         let joint = |station, bending| Joint { name: "j".into(), station, bending, torsion: 0.0 };
         let bent = |radius| rod().with_bend(radius, BendFlexibility::Beam);
+        let sleeve = |from, to, inner| {
+            let pipe = Pipe::new(Round::tube(0.036, inner), rod().pipe1.material);
+            rod().with_sleeve("s", from, to, pipe)
+        };
+        assert!(sleeve(0.15, 0.675, 0.032).checked().is_ok());
         for (rod, name) in [
             (Rod { l1: 0.0, ..rod() }, "l1"),
             (Rod { l2: f64::NAN, ..rod() }, "l2"),
@@ -247,6 +276,11 @@ mod tests {
             (rod().with_mass("ring", 0.1, f64::INFINITY), "mass"),
             (rod().with_joint(joint(0.1, -1e-6)), "bending"),
             (rod().with_joint(joint(f64::NAN, 1e-6)), "station"),
+            (sleeve(0.1, 0.2, 0.032), "sleeve"),
+            (sleeve(0.1, 0.1, 0.032), "sleeve"),
+            (sleeve(0.1, f64::NAN, 0.032), "sleeve"),
+            (sleeve(0.2, 0.3, 0.031), "sleeve"),
+            (sleeve(0.2, 0.3, 0.05), "inner_diameter"),
             (rod().with_pipe2(Pipe::new(Round::tube(0.01, 0.01), rod().pipe1.material)), "inner_diameter"),
         ] {
             let Err(Error::Argument { name: found, .. }) = rod.checked() else { panic!("{name}") };

@@ -21,7 +21,7 @@ use self::geometry::RawGeometry;
 use self::laws::RawLaw;
 pub use self::materials::MaterialTable;
 pub use self::parts::{RawJoint, RawMass};
-use self::parts::{RawPipe, RawTip};
+use self::parts::{RawPipe, RawSleeve, RawTip};
 use self::uncertainty::RawUncertainty;
 use super::{Rod, Warning};
 use crate::error::Result;
@@ -94,6 +94,8 @@ struct RawRod {
     #[serde(default)]
     joint: Vec<RawJoint>,
     #[serde(default)]
+    sleeve: Vec<Spanned<RawSleeve>>,
+    #[serde(default)]
     law: Vec<RawLaw>,
     #[serde(default)]
     standard_uncertainty: RawUncertainty,
@@ -116,6 +118,8 @@ const REQUIRED: &Required = &[
     ("formula", "a formula in quotes"),
     ("range", "where a law was recorded: [from, to], in the unit of its variable"),
     ("value", "the number, in its unit"),
+    ("from_mm", "the distance from the flange along the centreline at which the sleeve begins, in mm"),
+    ("to_mm", "the distance from the flange along the centreline at which the sleeve ends, in mm"),
     ("station_mm", "the distance from the flange along the centreline in mm"),
 ];
 
@@ -159,6 +163,7 @@ impl Check<'_> {
             },
             masses: Vec::new(),
             joints: Vec::new(),
+            sleeves: Vec::new(),
             laws: Vec::new(),
             linear_range: match &raw.linear_range_n {
                 Some(range) => Some(self.toml.positive("linear_range_n", range)?),
@@ -169,6 +174,7 @@ impl Check<'_> {
         };
         limits::check(self.toml.file(), raw.mass.len(), limits::ROD_PARTS, "masses")?;
         limits::check(self.toml.file(), raw.joint.len(), limits::ROD_PARTS, "joints")?;
+        limits::check(self.toml.file(), raw.sleeve.len(), limits::ROD_PARTS, "sleeves")?;
         for mass in &raw.mass {
             let mass = self.lumped_mass(mass, rod.length())?;
             rod.masses.push(mass);
@@ -176,6 +182,10 @@ impl Check<'_> {
         for joint in &raw.joint {
             let joint = self.joint(joint, &rod.joints, rod.length())?;
             rod.joints.push(joint);
+        }
+        for sleeve in &raw.sleeve {
+            let sleeve = self.sleeve(sleeve, &rod, &materials)?;
+            rod.sleeves.push(sleeve);
         }
         self.laws(&raw.law, &mut rod)?;
         Ok(rod)
@@ -191,7 +201,7 @@ fn file_stem(file: &str) -> String {
 mod tests {
     use super::*;
     use crate::material::{Material, MaterialUncertainty};
-    use crate::rod::{BendFlexibility, Joint, LumpedMass, Pipe, StandardUncertainty};
+    use crate::rod::{BendFlexibility, Joint, LumpedMass, Pipe, Sleeve, StandardUncertainty};
     use crate::section::{Rectangle, Round, Section};
     use crate::units::{GRAM, MM, URAD_PER_NM};
     use approx::assert_relative_eq;
@@ -258,6 +268,7 @@ torsion_urad_per_nm = 3.0
                 bending: 2.0 * URAD_PER_NM,
                 torsion: 3.0 * URAD_PER_NM,
             }],
+            sleeves: vec![],
             laws: vec![],
             linear_range: None,
             standard_uncertainty: StandardUncertainty::default(),
@@ -313,6 +324,43 @@ torsion_urad_per_nm = 3.0
             let rod = read(&EXAMPLE.replace("bend_radius_mm = 0.0", &bend));
             assert_eq!((rod.bend_radius, rod.bend_flexibility), (0.04, flexibility));
         }
+    }
+
+    const SLEEVE: &str = "[[sleeve]]\nname = \"collar\"\nfrom_mm = 100\nto_mm = 150\nmaterial = \"steel\"\n\
+                          outer_diameter_mm = 20\ninner_diameter_mm = 16\n";
+
+    #[test]
+    fn a_sleeve_is_a_pipe_over_a_stretch_of_a_straight_one() {
+        let rod = read(&format!("{EXAMPLE}{SLEEVE}"));
+        let pipe = Pipe { section: Round::tube(0.020, 0.016).into(), material: rod.pipe1.material.clone() };
+        assert_eq!(rod.sleeves, [Sleeve { name: "collar".into(), from: 0.1, to: 0.15, pipe }]);
+        // one in the bore, and one over the other
+        let more = SLEEVE.replace("= 20", "= 12").replace("= 16", "= 0");
+        let over = SLEEVE.replace("= 20", "= 24").replace("= 16", "= 20");
+        assert_eq!(read(&format!("{EXAMPLE}{SLEEVE}{more}{over}")).sleeves.len(), 3);
+    }
+
+    #[test]
+    fn a_sleeve_that_cannot_be_is_refused_with_what_would_be_right() {
+        let on_a_pipe = "a stretch of one straight pipe, 0 to 150 mm or 150 to 675 mm";
+        for (key, value, expected) in [
+            ("to_mm = 150", "to_mm = 160", on_a_pipe),
+            ("to_mm = 150", "to_mm = 100", on_a_pipe),
+            ("to_mm = 150", "to_mm = 900", "a station on the rod, 0 to 675.000 mm"),
+            ("from_mm = 100\n", "", "the distance from the flange along the centreline at which the sleeve"),
+            ("= 16", "= 15", "the wall of sleeve \"collar\" would be where that of pipe1 is"),
+            ("= 20", "= 16", "less than the outer diameter"),
+            ("\"steel\"", "\"stell\"", "one of the file's materials: \"steel\""),
+            ("to_mm", "till_mm", "till_mm"),
+        ] {
+            let text = format!("{EXAMPLE}{}", SLEEVE.replacen(key, value, 1));
+            let error = Rod::from_toml("rods/5.toml", &text).unwrap_err().to_string();
+            assert!(error.starts_with("rods/5.toml:") && error.contains(expected), "{error}");
+        }
+        let twice = Rod::from_toml("5", &format!("{EXAMPLE}{SLEEVE}{SLEEVE}")).unwrap_err().to_string();
+        assert!(twice.contains("where that of sleeve \"collar\" is"), "{twice}");
+        let many = Rod::from_toml("5", &format!("{EXAMPLE}{}", SLEEVE.repeat(101))).unwrap_err().to_string();
+        assert!(many.contains("sleeves"), "{many}");
     }
 
     #[test]
@@ -391,6 +439,8 @@ torsion_urad_per_nm = 3.0
             max_relative = 2e-5
         );
 
+        let rod = read(&format!("{EXAMPLE}{}", piece("## Sleeves")));
+        assert_eq!(rod.sleeves.len(), 1);
         let rod = read(&format!("{EXAMPLE}{}", piece("## Standard uncertainties")));
         assert_eq!(rod.standard_uncertainty, StandardUncertainty::default());
         assert_eq!(rod.pipe1.material.standard_uncertainty, MaterialUncertainty::ISOTROPIC);

@@ -124,7 +124,11 @@ impl Rod {
         let joints = self.joints.iter().filter(|joint| is_free(joint.station));
         let all = masses
             .map(|mass| Feature::Mass(mass.name.clone()))
-            .chain(joints.map(|joint| Feature::Joint(joint.name.clone())));
+            .chain(joints.map(|joint| Feature::Joint(joint.name.clone())))
+            .chain(self.sleeves.iter().enumerate().flat_map(|(k, sleeve)| {
+                let ends = [(Feature::SleeveFrom(k), sleeve.from), (Feature::SleeveTo(k), sleeve.to)];
+                ends.into_iter().filter(|(_, station)| is_free(*station)).map(|(feature, _)| feature)
+            }));
         for feature in all {
             if !features.contains(&feature) {
                 features.push(feature);
@@ -166,7 +170,7 @@ impl<T: Number> Rod<T> {
             | NominalNumber::Height(part)
             | NominalNumber::Wall(part)
             | NominalNumber::Section(part, _) => {
-                let mut section = self.part(*part).section;
+                let mut section = self.part(*part)?.section;
                 match (&section, number) {
                     (Section::Round(round), NominalNumber::Wall(_)) => Some(round.wall()),
                     _ => dimension(&mut section, number).copied(),
@@ -179,6 +183,8 @@ impl<T: Number> Rod<T> {
             NominalNumber::Station(Feature::Mass(name)) => {
                 self.masses.iter().find(|mass| mass.name == *name).map(|mass| mass.station)
             }
+            NominalNumber::Station(Feature::SleeveFrom(k)) => self.sleeves.get(*k).map(|own| own.from),
+            NominalNumber::Station(Feature::SleeveTo(k)) => self.sleeves.get(*k).map(|own| own.to),
             NominalNumber::TipMass => Some(self.tip_mass),
             NominalNumber::Angle => Some(self.gamma),
             NominalNumber::PoissonRatio(name) => Some(material(name)?.poisson_ratio),
@@ -207,7 +213,7 @@ impl<T: Number> Rod<T> {
         let mut rod = self.clone();
         let Some(nominal) = self.value_of(number) else { return rod };
         let mut of_material = |name: &str, field: fn(&mut Material<T>) -> &mut T| {
-            for pipe in [&mut rod.pipe1, &mut rod.bend, &mut rod.pipe2] {
+            for pipe in rod.pipes_mut() {
                 if pipe.material.name == name {
                     let own = field(&mut pipe.material);
                     *own = if *own == nominal { value } else { *own * (value / nominal) };
@@ -232,6 +238,8 @@ impl<T: Number> Rod<T> {
                     Part::Pipe1 => &mut rod.pipe1,
                     Part::Bend => &mut rod.bend,
                     Part::Pipe2 => &mut rod.pipe2,
+                    // it is there: its value was found
+                    Part::Sleeve(k) => &mut rod.sleeves[*k].pipe,
                 };
                 match (&mut own.section, number) {
                     // a tube's outer diameter stays
@@ -255,6 +263,8 @@ impl<T: Number> Rod<T> {
                 let own = rod.masses.iter_mut().filter(|mass| mass.name == *name);
                 own.for_each(|mass| mass.station += value - nominal);
             }
+            NominalNumber::Station(Feature::SleeveFrom(k)) => rod.sleeves[*k].from = value,
+            NominalNumber::Station(Feature::SleeveTo(k)) => rod.sleeves[*k].to = value,
             NominalNumber::TipMass => rod.tip_mass = value,
             NominalNumber::Angle => rod.gamma = value,
             NominalNumber::PoissonRatio(name) => of_material(name, |m| &mut m.poisson_ratio),
@@ -286,8 +296,7 @@ impl<T: Number> Rod<T> {
                 | NominalNumber::BendRadius
                 | NominalNumber::Angle
         );
-        let stations = rod.masses.iter_mut().map(|mass| &mut mass.station);
-        for station in stations.chain(rod.joints.iter_mut().map(|joint| &mut joint.station)) {
+        for station in rod.stations_mut() {
             *station = if is_length { kept(*station) } else { on_rod(*station) };
         }
         rod
@@ -298,18 +307,22 @@ impl<T: Number> Rod<T> {
         [T::zero(), self.bend_start(), self.bend_end(), self.length()]
     }
 
-    fn part(&self, part: Part) -> &Pipe<T> {
+    /// The pipe of a part, where the rod has one.
+    pub fn part(&self, part: Part) -> Option<&Pipe<T>> {
         match part {
-            Part::Pipe1 => &self.pipe1,
-            Part::Bend => &self.bend,
-            Part::Pipe2 => &self.pipe2,
+            Part::Pipe1 => Some(&self.pipe1),
+            Part::Bend => Some(&self.bend),
+            Part::Pipe2 => Some(&self.pipe2),
+            Part::Sleeve(k) => self.sleeves.get(k).map(|sleeve| &sleeve.pipe),
         }
     }
 
-    /// The parts from the flange on; the bend only where it has a length.
+    /// The parts from the flange on, then the sleeves; the bend only where it has a length.
     fn parts(&self) -> Vec<(Part, &Pipe<T>)> {
         let bend = (self.bend_radius.value() > 0.0).then_some((Part::Bend, &self.bend));
-        [(Part::Pipe1, &self.pipe1)].into_iter().chain(bend).chain([(Part::Pipe2, &self.pipe2)]).collect()
+        let sleeves = self.sleeves.iter().enumerate().map(|(k, sleeve)| (Part::Sleeve(k), &sleeve.pipe));
+        let pipes = [(Part::Pipe1, &self.pipe1)].into_iter().chain(bend).chain([(Part::Pipe2, &self.pipe2)]);
+        pipes.chain(sleeves).collect()
     }
 
     fn joint(&self, name: &str) -> Option<&Joint<T>> {

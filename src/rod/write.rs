@@ -40,7 +40,9 @@ impl Rod {
             BendFlexibility::Factor(k) => format!("bend_flexibility = {k:?}"),
         });
         let pipes = [("pipe1", &self.pipe1), ("bend", &self.bend), ("pipe2", &self.pipe2)];
-        let materials = named(&pipes);
+        let of_sleeves = self.sleeves.iter().map(|sleeve| ("sleeve", &sleeve.pipe));
+        let all: Vec<(&str, &Pipe)> = pipes.into_iter().chain(of_sleeves).collect();
+        let materials = named(&all);
         for (name, material) in &materials {
             line(format!("\n[material.{}]", quoted(name)));
             line(format!("youngs_modulus_gpa = {:?}", in_unit(material.youngs_modulus, GPA)));
@@ -48,13 +50,16 @@ impl Rod {
             line(format!("density_kg_m3 = {:?}", material.density));
             material_details(material).into_iter().for_each(&mut line);
         }
-        for (key, pipe) in pipes {
+        let pipe_lines = |pipe: &Pipe| -> Vec<String> {
             let known = materials.iter().find(|(_, material)| *material == &pipe.material);
             let name = known.map_or(pipe.material.name.as_str(), |(name, _)| name.as_str());
-            line(format!("\n[{key}]\nmaterial = {}", quoted(name)));
-            for (key, value, unit) in section(&pipe.section) {
-                line(format!("{key} = {:?}", in_unit(value, unit)));
-            }
+            let sizes = section(&pipe.section).into_iter();
+            let sizes = sizes.map(|(key, value, unit)| format!("{key} = {:?}", in_unit(value, unit)));
+            [format!("material = {}", quoted(name))].into_iter().chain(sizes).collect()
+        };
+        for (key, pipe) in pipes {
+            line(format!("\n[{key}]"));
+            pipe_lines(pipe).into_iter().for_each(&mut line);
         }
         line(format!("\n[tip]\nmass_g = {:?}", in_unit(self.tip_mass, GRAM)));
         for mass in &self.masses {
@@ -67,6 +72,12 @@ impl Rod {
             line(format!("station_mm = {:?}", in_unit(joint.station, MM)));
             line(format!("bending_urad_per_nm = {:?}", in_unit(joint.bending, URAD_PER_NM)));
             line(format!("torsion_urad_per_nm = {:?}", in_unit(joint.torsion, URAD_PER_NM)));
+        }
+        for sleeve in &self.sleeves {
+            line(format!("\n[[sleeve]]\nname = {}", quoted(&sleeve.name)));
+            line(format!("from_mm = {:?}", in_unit(sleeve.from, MM)));
+            line(format!("to_mm = {:?}", in_unit(sleeve.to, MM)));
+            pipe_lines(&sleeve.pipe).into_iter().for_each(&mut line);
         }
         self.laws.iter().flat_map(law).for_each(&mut line);
         let (own, usual) = (&self.standard_uncertainty, StandardUncertainty::default());
@@ -196,6 +207,7 @@ mod tests {
             }
             assert_eq!((&rod.source, rod.l1, rod.gamma), (&written.source, written.l1, written.gamma));
             assert_eq!((&rod.masses, &rod.joints), (&written.masses, &written.joints));
+            assert!(rod.sleeves.is_empty());
             assert_eq!(rod.tip_mass, written.tip_mass);
         }
     }
@@ -206,8 +218,19 @@ mod tests {
         let mut rod = Rod::from_toml("rod", &(include_str!("../../rods/5.toml").to_owned() + joint)).unwrap();
         rod.pipe2.material.youngs_modulus *= 0.7;
         rod.bend_flexibility = BendFlexibility::Factor(1.75);
+        let mut collar = Pipe::new(crate::section::Round::tube(0.036, 0.032), rod.pipe1.material.clone());
+        rod = rod.with_sleeve("over", 0.2, 0.25, collar.clone());
+        collar.material.density *= 2.0;
+        let tip = rod.length();
+        rod = rod.with_sleeve("heavy", 0.5, tip, collar);
         let written = again(&rod);
         assert_eq!(written.joints, rod.joints);
+        for (a, b) in written.sleeves.iter().zip(&rod.sleeves) {
+            assert_eq!((&a.name, a.from, a.to), (&b.name, b.from, b.to));
+            let [outer, known] = [a, b].map(|sleeve| sleeve.pipe.section.height());
+            assert!((outer - known).abs() < 1e-15 && a.pipe.material.density == b.pipe.material.density);
+        }
+        assert_eq!(written.sleeves.len(), 2);
         assert_eq!(written.bend_flexibility, rod.bend_flexibility);
         assert_ne!(written.pipe1.material.youngs_modulus, written.pipe2.material.youngs_modulus);
     }

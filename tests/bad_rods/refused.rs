@@ -142,12 +142,12 @@ fn a_key_or_section_that_is_not_known_is_named_with_its_neighbour() {
         (
             "name = \"5#\"",
             "nmae = \"5#\"",
-            "rod.toml:1:1: unknown key `nmae`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
+            "rod.toml:1:1: unknown key `nmae`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, sleeve, law, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
         ),
         (
             "name = \"5#\"",
             "operator = \"Ann\"",
-            "rod.toml:1:1: unknown key `operator`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
+            "rod.toml:1:1: unknown key `operator`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, sleeve, law, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
         ),
         (
             "l1_mm = 150.0",
@@ -182,27 +182,27 @@ fn a_key_or_section_that_is_not_known_is_named_with_its_neighbour() {
         (
             "[geometry]",
             "[geometri]",
-            "rod.toml:4:2: unknown section [geometri], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> did you mean [geometry]?",
+            "rod.toml:4:2: unknown section [geometri], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, sleeve, law, standard_uncertainty -> did you mean [geometry]?",
         ),
         (
             "[geometry]\n",
             "",
-            "rod.toml:6:1: unknown key `gamma_deg`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
+            "rod.toml:6:1: unknown key `gamma_deg`, expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, sleeve, law, standard_uncertainty -> if it belongs to a section, write it below that section's [header]",
         ),
         (
             "[tip]",
             "[Tip]",
-            "rod.toml:33:2: unknown section [Tip], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> did you mean [tip]?",
+            "rod.toml:33:2: unknown section [Tip], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, sleeve, law, standard_uncertainty -> did you mean [tip]?",
         ),
         (
             "[pipe2]",
             "[pipe3]",
-            "rod.toml:28:2: unknown section [pipe3], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> did you mean [pipe1]?",
+            "rod.toml:28:2: unknown section [pipe3], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, sleeve, law, standard_uncertainty -> did you mean [pipe1]?",
         ),
         (
             "[material.steel]",
             "[materials.steel]",
-            "rod.toml:9:2: unknown section [materials], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> did you mean [material]?",
+            "rod.toml:9:2: unknown section [materials], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, sleeve, law, standard_uncertainty -> did you mean [material]?",
         ),
         (
             "station_mm = 300.0",
@@ -320,7 +320,7 @@ fn a_key_or_section_that_is_misplaced_or_repeated_is_named() {
         (
             "[geometry]",
             "geometry = 5\n[geometri]",
-            "rod.toml:5:2: unknown section [geometri], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, law, standard_uncertainty -> did you mean [geometry]?",
+            "rod.toml:5:2: unknown section [geometri], expected one of name, source, linear_range_n, geometry, material, pipe1, pipe2, bend, tip, mass, joint, sleeve, law, standard_uncertainty -> did you mean [geometry]?",
         ),
         (
             "[tip]\nmass_g = 55.0",

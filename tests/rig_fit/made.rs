@@ -17,6 +17,7 @@ pub const EULER_BERNOULLI: Physics = Physics {
     bend: true,
     bend_flexibility: true,
     joints: true,
+    sleeves: true,
     masses: true,
     tip_mass: true,
 };

@@ -267,6 +267,30 @@ fn a_joint_turns_everything_beyond_it() {
     assert_relative_eq!(corner[(1, 1)], 4e-4 * 0.45f64.powi(2), max_relative = 1e-9);
 }
 
+/// J. M. Gere, *Mechanics of Materials*, 6th ed., § 9.7, example 9-14: a cantilever of length L with
+/// 2I over the half at its root and I over the other sinks by 3PL³/16EI at its end. Here the second
+/// I is that of a sleeve.
+#[test]
+fn a_cantilever_that_is_twice_as_stiff_in_its_half_at_the_root() {
+    let rod = reference_rod("gamma_deg = 180.0");
+    let length = rod.length();
+    let sleeve = rodcal::section::General {
+        area: 1e-4,
+        iy: rod.pipe1.section.second_moment(),
+        iz: rod.pipe1.section.second_moment(),
+        torsion_constant: 1e-9,
+        shear_coefficient: 0.5,
+    };
+    let sleeve = rodcal::rod::Pipe::new(sleeve, rod.pipe1.material.clone());
+    let rod = rod.with_sleeve("over the half", 0.0, length / 2.0, sleeve);
+    let physics = Physics { sleeves: true, ..Physics::BENDING_AND_TORSION };
+    let ei = 193e9 * rod.pipe1.section.second_moment();
+    let found = Compliance::of_model(&rod, &physics, 7).unwrap().force;
+    let expected = 3.0 * length.powi(3) / (16.0 * ei);
+    assert_relative_eq!(found[(0, 0)], expected, max_relative = EXACT);
+    assert_relative_eq!(found[(1, 1)], expected, max_relative = EXACT);
+}
+
 /// Displacement at mid-rod under a force at mid-rod is that of the shorter cantilever.
 #[test]
 fn a_station_between_flange_and_tip_can_be_loaded_and_read() {

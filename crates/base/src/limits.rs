@@ -47,8 +47,8 @@ pub const OWN_PARAMETERS: usize = 8;
 pub const NAME_BYTES: usize = 60;
 /// Bytes of its words.
 pub const WORDS_BYTES: usize = 200;
-/// Masses, joints and laws of a rod, of each: masses and joints are nodes of its beam, and numbers
-/// whose part in the uncertainty is found by a beam of its own.
+/// Masses, joints, sleeves and laws of a rod, of each: what sits along it is nodes of its beam, and
+/// numbers whose part in the uncertainty is found by a beam of its own.
 pub const ROD_PARTS: usize = 100;
 /// Bytes of a result (result.json) that is read again.
 pub const RESULT_BYTES: usize = 64_000_000;

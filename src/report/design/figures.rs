@@ -158,9 +158,10 @@ fn outlines(rod: &Rod) -> Vec<Vec<[f64; 2]>> {
             .collect()
     };
     let mut lines = Vec::new();
-    for (from, to, pipe, count) in
-        [(0.0, start, &rod.pipe1, 1), (start, end, &rod.bend, POINTS), (end, length, &rod.pipe2, 1)]
-    {
+    let pipes = [(0.0, start, &rod.pipe1, 1), (start, end, &rod.bend, POINTS), (end, length, &rod.pipe2, 1)];
+    // in two pieces, so that no end is mitred
+    let sleeves = rod.sleeves.iter().map(|sleeve| (sleeve.from, sleeve.to, &sleeve.pipe, 2));
+    for (from, to, pipe, count) in pipes.into_iter().chain(sleeves) {
         if to - from > 1e-6 {
             let mut outline = side(from, to, half(pipe), count);
             let mut back = side(from, to, -half(pipe), count);

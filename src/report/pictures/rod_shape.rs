@@ -52,6 +52,8 @@ pub struct Tube {
     pub outer_mm: [f64; 2],
     /// Inner sizes, mm; 0 for what is solid.
     pub inner_mm: [f64; 2],
+    /// True of a sleeve: what is inside it is drawn by itself.
+    pub is_sleeve: bool,
 }
 
 /// A stretch of the rod that is marked.
@@ -92,7 +94,7 @@ pub enum StationKind {
 /// What ends this close to the tip ends there, mm.
 const END_MM: f64 = 1e-3;
 /// What the drawing's sizes are worth.
-const TO_SCALE: &str = "Tubes and walls are to scale, cut open along the centreline. Sleeves, joints, tip and clamp are \
+const TO_SCALE: &str = "Tubes and walls are to scale, cut open along the centreline. Masses, joints, tip and clamp are \
      symbols at their places, because the rod file gives no sizes of them.";
 
 /// Side view (X–Z) and top view (X–Y), the latter seen against Z, to the same scale. A case is
@@ -251,7 +253,7 @@ fn cut_open(tube: &Tube, line: &Outline, axis: usize) -> Vec<Mark> {
     if let Some(centre) = line.end_on(tube.from_mm, tube.to_mm) {
         let halves = |sizes: [f64; 2]| sizes.map(|size| 0.5 * size);
         let mut marks = vec![area("wall", ring(centre, halves(tube.outer_mm)), wall)];
-        if inner > 0.0 {
+        if inner > 0.0 && !tube.is_sleeve {
             marks.push(area("", ring(centre, halves(tube.inner_mm)), bore));
         }
         return marks;
@@ -260,11 +262,9 @@ fn cut_open(tube: &Tube, line: &Outline, axis: usize) -> Vec<Mark> {
     if inner <= 0.0 {
         return vec![area("wall", strip(-outer, outer), wall)];
     }
-    vec![
-        area("bore", strip(-inner, inner), bore),
-        area("wall", strip(inner, outer), wall),
-        area("wall", strip(-outer, -inner), wall),
-    ]
+    let bore = (!tube.is_sleeve).then(|| area("bore", strip(-inner, inner), bore));
+    let walls = [area("wall", strip(inner, outer), wall), area("wall", strip(-outer, -inner), wall)];
+    bore.into_iter().chain(walls).collect()
 }
 
 /// Points around a centre, at these half axes.

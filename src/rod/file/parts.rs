@@ -10,7 +10,7 @@ use super::materials::Checked;
 use crate::delimited::nearest_name;
 use crate::error::{Error, Result};
 use crate::material::listed;
-use crate::rod::{Joint, LumpedMass, Pipe, Warning};
+use crate::rod::{Joint, LumpedMass, Pipe, Rod, Sleeve, Warning};
 use crate::toml_text::Number;
 use crate::units::{GRAM, MM, URAD_PER_NM};
 
@@ -51,6 +51,44 @@ pub struct RawJoint {
     station_mm: Number,
     bending_urad_per_nm: Option<Number>,
     torsion_urad_per_nm: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a section [[sleeve]]")]
+pub(super) struct RawSleeve {
+    name: String,
+    from_mm: Number,
+    to_mm: Number,
+    material: Spanned<String>,
+    outer_diameter_mm: Option<Number>,
+    inner_diameter_mm: Option<Number>,
+    width_mm: Option<Number>,
+    height_mm: Option<Number>,
+    wall_mm: Option<Number>,
+    area_mm2: Option<Number>,
+    iy_mm4: Option<Number>,
+    iz_mm4: Option<Number>,
+    j_mm4: Option<Number>,
+    kappa: Option<Number>,
+}
+
+impl RawSleeve {
+    /// What it has in common with a pipe.
+    fn pipe(&self) -> RawPipe {
+        RawPipe {
+            material: self.material.clone(),
+            outer_diameter_mm: self.outer_diameter_mm.clone(),
+            inner_diameter_mm: self.inner_diameter_mm.clone(),
+            width_mm: self.width_mm.clone(),
+            height_mm: self.height_mm.clone(),
+            wall_mm: self.wall_mm.clone(),
+            area_mm2: self.area_mm2.clone(),
+            iy_mm4: self.iy_mm4.clone(),
+            iz_mm4: self.iz_mm4.clone(),
+            j_mm4: self.j_mm4.clone(),
+            kappa: self.kappa.clone(),
+        }
+    }
 }
 
 impl Check<'_> {
@@ -121,6 +159,27 @@ impl Check<'_> {
             bending: compliance("joint.bending_urad_per_nm", &raw.bending_urad_per_nm)?,
             torsion: compliance("joint.torsion_urad_per_nm", &raw.torsion_urad_per_nm)?,
         })
+    }
+
+    /// A sleeve on a rod that has those before it.
+    pub(super) fn sleeve(
+        &mut self,
+        raw: &Spanned<RawSleeve>,
+        rod: &Rod,
+        materials: &BTreeMap<&str, Checked>,
+    ) -> Result<Sleeve> {
+        let fields = raw.get_ref();
+        let pipe = self.pipe("sleeve", &Spanned::new(raw.span(), fields.pipe()), materials)?;
+        let from = self.station("sleeve.from_mm", &fields.from_mm, rod.length())?;
+        let to = self.station("sleeve.to_mm", &fields.to_mm, rod.length())?;
+        if let Some(expected) = rod.no_stretch(from, to) {
+            return Err(self.toml.is("sleeve.to_mm", &fields.to_mm, &expected));
+        }
+        if let Some(other) = rod.in_the_way(&pipe.section, from, to) {
+            let found = format!("the wall of sleeve {:?} would be where that of {other} is", fields.name);
+            return Err(self.toml.wrong(raw, found, "a tube over it or in it"));
+        }
+        Ok(Sleeve { name: fields.name.clone(), from, to, pipe })
     }
 
     /// A station on the rod, m. The tip may be named with the last digit rounded.

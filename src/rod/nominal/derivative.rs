@@ -4,7 +4,7 @@
 use super::{NominalNumber, SAME_PLACE};
 use crate::dual::{Dual, Number};
 use crate::material::Material;
-use crate::rod::{BendFlexibility, Joint, LumpedMass, Pipe, Rod};
+use crate::rod::{BendFlexibility, Joint, LumpedMass, Pipe, Rod, Sleeve};
 use crate::section::{General, Rectangle, Round, Section};
 
 impl Rod {
@@ -27,9 +27,7 @@ impl Rod {
         let mut rod = self.lifted();
         if let NominalNumber::Station(_) = number {
             let is_here = |station: &Dual| (station.re - value.re).abs() <= SAME_PLACE;
-            let masses = rod.masses.iter_mut().map(|mass| &mut mass.station);
-            let all = masses.chain(rod.joints.iter_mut().map(|joint| &mut joint.station));
-            all.filter(|station| is_here(station)).for_each(|station| *station = value);
+            rod.stations_mut().filter(|station| is_here(station)).for_each(|station| *station = value);
             return Some(rod);
         }
         Some(rod.with(number, value))
@@ -48,6 +46,12 @@ impl Rod {
             name: mass.name.clone(),
             station: value_at(mass.station),
             mass: value_at(mass.mass),
+        };
+        let sleeve = |sleeve: &Sleeve| Sleeve {
+            name: sleeve.name.clone(),
+            from: value_at(sleeve.from),
+            to: value_at(sleeve.to),
+            pipe: sleeve.pipe.lifted(),
         };
         Rod {
             name: self.name.clone(),
@@ -68,6 +72,7 @@ impl Rod {
             tip_mass: value_at(self.tip_mass),
             masses: self.masses.iter().map(mass).collect(),
             joints: self.joints.iter().map(joint).collect(),
+            sleeves: self.sleeves.iter().map(sleeve).collect(),
             laws: self.laws.clone(),
             linear_range: self.linear_range,
             standard_uncertainty: self.standard_uncertainty,

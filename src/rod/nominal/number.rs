@@ -49,7 +49,7 @@ pub enum NominalNumber {
     LengthL2,
     /// Radius of the bend, m.
     BendRadius,
-    /// Where a sleeve, a holder or a joint sits, m from the flange.
+    /// Where a ring, a holder, a joint or an end of a sleeve sits, m from the flange.
     Station(Feature),
     /// Ball and ball holder, kg.
     TipMass,
@@ -59,7 +59,7 @@ pub enum NominalNumber {
     PoissonRatio(String),
     /// A bend's flexibility factor that the file states, dimensionless.
     BendFactor,
-    /// A sleeve or a holder, kg; masses of one name go together.
+    /// A ring or a holder, kg; masses of one name go together.
     Mass(String),
     /// Bending compliance of the joint of this name, rad/(N·m).
     JointBending(String),
@@ -67,7 +67,7 @@ pub enum NominalNumber {
     JointTorsion(String),
 }
 
-/// One of the three parts that have a section of their own.
+/// A part that has a section of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Part {
     /// Flange to bend. The bend goes with it where it is the same tube.
@@ -76,6 +76,8 @@ pub enum Part {
     Bend,
     /// Bend to tip.
     Pipe2,
+    /// The sleeve of this number, in the order of the rod file, from 0.
+    Sleeve(usize),
 }
 
 /// A constant of a [`crate::section::General`] section.
@@ -100,6 +102,10 @@ pub enum Feature {
     Joint(String),
     /// The mass of this name; masses of one name go together.
     Mass(String),
+    /// The beginning of the sleeve of this number, in the order of the rod file, from 0.
+    SleeveFrom(usize),
+    /// Its end.
+    SleeveTo(usize),
 }
 
 impl NominalNumber {
@@ -123,6 +129,8 @@ impl NominalNumber {
             NominalNumber::LengthL1 => "l1_mm",
             NominalNumber::LengthL2 => "l2_mm",
             NominalNumber::BendRadius => "bend_radius_mm",
+            NominalNumber::Station(Feature::SleeveFrom(_)) => "from_mm",
+            NominalNumber::Station(Feature::SleeveTo(_)) => "to_mm",
             NominalNumber::Station(_) => "station_mm",
             NominalNumber::TipMass | NominalNumber::Mass(_) => "mass_g",
             NominalNumber::Section(_, SectionConstant::ShearCoefficient) => "kappa",
@@ -168,7 +176,7 @@ impl NominalNumber {
             | NominalNumber::Width(part)
             | NominalNumber::Height(part)
             | NominalNumber::Wall(part)
-            | NominalNumber::Section(part, _) => part.key().to_owned(),
+            | NominalNumber::Section(part, _) => part.key(),
             NominalNumber::LengthL1
             | NominalNumber::LengthL2
             | NominalNumber::BendRadius
@@ -179,6 +187,9 @@ impl NominalNumber {
             | NominalNumber::JointTorsion(name) => format!("joint.{name}"),
             NominalNumber::Station(Feature::Mass(name)) | NominalNumber::Mass(name) => {
                 format!("mass.{name}")
+            }
+            NominalNumber::Station(Feature::SleeveFrom(sleeve) | Feature::SleeveTo(sleeve)) => {
+                Part::Sleeve(*sleeve).key()
             }
             NominalNumber::TipMass => "tip".to_owned(),
         }
@@ -196,23 +207,25 @@ impl NominalNumber {
 }
 
 impl Part {
-    /// Its table in the rod file.
-    pub fn key(&self) -> &'static str {
+    /// Its table in the rod file; sleeves with their number from 1.
+    pub fn key(&self) -> String {
         match self {
-            Part::Pipe1 => "pipe1",
-            Part::Bend => "bend",
-            Part::Pipe2 => "pipe2",
+            Part::Pipe1 => "pipe1".into(),
+            Part::Bend => "bend".into(),
+            Part::Pipe2 => "pipe2".into(),
+            Part::Sleeve(sleeve) => format!("sleeve.{}", sleeve + 1),
         }
     }
 }
 
 impl fmt::Display for Part {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Part::Pipe1 => "pipe 1",
-            Part::Bend => "the bend",
-            Part::Pipe2 => "pipe 2",
-        })
+        match self {
+            Part::Pipe1 => f.write_str("pipe 1"),
+            Part::Bend => f.write_str("the bend"),
+            Part::Pipe2 => f.write_str("pipe 2"),
+            Part::Sleeve(sleeve) => write!(f, "sleeve {}", sleeve + 1),
+        }
     }
 }
 
@@ -237,6 +250,12 @@ impl fmt::Display for NominalNumber {
             NominalNumber::BendRadius => f.write_str("bend radius"),
             NominalNumber::Station(Feature::Joint(name)) => write!(f, "station of joint {name}"),
             NominalNumber::Station(Feature::Mass(name)) => write!(f, "station of mass {name}"),
+            NominalNumber::Station(Feature::SleeveFrom(sleeve)) => {
+                write!(f, "beginning of {}", Part::Sleeve(*sleeve))
+            }
+            NominalNumber::Station(Feature::SleeveTo(sleeve)) => {
+                write!(f, "end of {}", Part::Sleeve(*sleeve))
+            }
             NominalNumber::TipMass => f.write_str("tip mass"),
             NominalNumber::Section(part, SectionConstant::ShearCoefficient) => write!(f, "κ of {part}"),
             NominalNumber::Angle => f.write_str("γ"),

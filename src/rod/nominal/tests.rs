@@ -19,6 +19,7 @@ fn rod() -> Rod {
         .with_joint(joint("sleeve", 0.4))
         .with_mass("ring", 0.4, 0.03)
         .with_mass("holder", tip, 0.01)
+        .with_sleeve("collar", 0.6, tip, Pipe::new(Rectangle::solid(0.03, 0.04), material("brass")))
         .checked()
         .unwrap()
 }
@@ -37,7 +38,7 @@ fn every_number_that_is_not_exact_is_there_with_its_uncertainty() {
         ("l2".to_owned(), 0.525, 0.3e-3),
         ("bend radius".to_owned(), 0.050, 0.3e-3),
     ];
-    for name in ["steel", "aluminium"] {
+    for name in ["steel", "aluminium", "brass"] {
         expected.extend([
             (format!("E of {name}"), 193e9, 193e9 * percent),
             (format!("G of {name}"), g, g * 2.0 * percent),
@@ -51,12 +52,16 @@ fn every_number_that_is_not_exact_is_there_with_its_uncertainty() {
         ("width of pipe 2", 0.02),
         ("height of pipe 2", 0.03),
         ("wall of pipe 2", 0.001),
+        ("width of sleeve 1", 0.03),
+        ("height of sleeve 1", 0.04),
     ] {
         expected.push((name.to_owned(), value, 0.03e-3));
     }
     expected.push(("tip mass".to_owned(), 0.06, 0.5e-3));
     expected.push(("station of mass ring".to_owned(), 0.4, 0.3e-3));
     expected.push(("station of joint sleeve".to_owned(), 0.4, 0.3e-3));
+    // its end is the tip's
+    expected.push(("beginning of sleeve 1".to_owned(), 0.6, 0.3e-3));
     assert_eq!(found.len(), expected.len(), "{found:?}");
     for (found, expected) in found.iter().zip(&expected) {
         assert_eq!(found.0, expected.0);
@@ -84,7 +89,7 @@ fn one_number_changes_and_nothing_else() {
             assert_eq!(changed.value_of(&other.number), Some(other.value), "{number} {}", other.number);
         }
     }
-    let unknown = NominalNumber::YoungsModulus("brass".into());
+    let unknown = NominalNumber::YoungsModulus("lead".into());
     assert_eq!((rod.with(&unknown, 1.0), rod.value_of(&unknown)), (rod.clone(), None));
 }
 

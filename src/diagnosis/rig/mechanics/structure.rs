@@ -10,6 +10,8 @@
 //! D bending of the arc k, k₀ its flexibility factor, the file's factor        J_j a joint per rad/(N·m), β_j its change
 //! ```
 //!
+//! (Where sleeves share shear with a pipe, κ of each follows its own E/G: g is off by 1e-8 there.)
+//!
 //! P, B and D come from the beam model itself, as differences of models in which one thing was
 //! changed. A joint at x turns what is beyond it about its axes a, those across the tangent t or t
 //! itself: with the force at p and the reading at q
@@ -149,15 +151,9 @@ impl Structure {
         let mut parts = vec![Matrix3::zeros(); self.pairs.len()];
         for k in 0..STEPS {
             let station = (k as f64 + 0.5) * step;
-            let pipe = match station {
-                s if s < rod.bend_start() => &rod.pipe1,
-                s if s < rod.bend_end() => &rod.bend,
-                _ => &rod.pipe2,
-            };
             let (at, tangent) = (rod.point(station), tangent(rod, station));
             let along = tangent * tangent.transpose();
-            let bending = pipe.material.youngs_modulus * pipe.section.second_moment();
-            let torsion = pipe.material.shear_modulus * pipe.section.torsion_constant();
+            let [bending, torsion] = stiffness(rod, station);
             let flexibility =
                 ((Matrix3::identity() - along) / bending + along / torsion) * (share(station) * step);
             for (part, &(load, read)) in parts.iter_mut().zip(&self.pairs) {
@@ -225,15 +221,10 @@ impl Structure {
     /// How far the whole rod bends and twists at the tip per moment there, ∫ds/EI and ∫ds/GJ,
     /// rad/(N·m).
     pub fn rotation(&self) -> [f64; 2] {
-        let rod = &self.rod;
-        let (start, end, length) = (rod.bend_start(), rod.bend_end(), rod.length());
-        let parts = [(&rod.pipe1, start), (&rod.bend, end - start), (&rod.pipe2, length - end)];
-        let bending = |pipe: &Pipe| pipe.material.youngs_modulus * pipe.section.second_moment();
-        let torsion = |pipe: &Pipe| pipe.material.shear_modulus * pipe.section.torsion_constant();
-        [
-            parts.iter().map(|(pipe, length)| length / bending(pipe)).sum(),
-            parts.iter().map(|(pipe, length)| length / torsion(pipe)).sum(),
-        ]
+        let stretches = self.rod.stretches().into_iter();
+        let turns =
+            stretches.map(|[from, to]| stiffness(&self.rod, 0.5 * (from + to)).map(|k| (to - from) / k));
+        turns.fold([0.0; 2], |sum, turn| [sum[0] + turn[0], sum[1] + turn[1]])
     }
 
     /// The rod, without its joints.
@@ -276,6 +267,18 @@ fn tangent(rod: &Rod, station: f64) -> Vector3<f64> {
     Vector3::new(turn.sin(), 0.0, turn.cos())
 }
 
+/// EI in the rod's plane and GJ of all that bears at a station (m), N·m².
+fn stiffness(rod: &Rod, station: f64) -> [f64; 2] {
+    let of_pipe = |pipe: &Pipe| {
+        let Pipe { section, material } = pipe;
+        [
+            material.youngs_modulus * section.second_moment(),
+            material.shear_modulus * section.torsion_constant(),
+        ]
+    };
+    rod.bearing_at(station).map(of_pipe).fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]])
+}
+
 fn difference(a: &[Matrix3<f64>], b: &[Matrix3<f64>], factor: f64) -> Parts {
     a.iter().zip(b).map(|(a, b)| (a - b) * factor).collect()
 }
@@ -283,7 +286,7 @@ fn difference(a: &[Matrix3<f64>], b: &[Matrix3<f64>], factor: f64) -> Parts {
 /// A rod with other moduli: factors on E and G of all pipes.
 pub fn with_moduli(rod: &Rod, e: f64, g: f64) -> Rod {
     let mut rod = rod.clone();
-    for pipe in [&mut rod.pipe1, &mut rod.bend, &mut rod.pipe2] {
+    for pipe in rod.pipes_mut() {
         pipe.material.youngs_modulus *= e;
         pipe.material.shear_modulus *= g;
     }

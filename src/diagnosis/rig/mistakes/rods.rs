@@ -160,4 +160,5 @@ fn is_alike(a: &Rod, b: &Rod) -> bool {
         && a.bend_flexibility == b.bend_flexibility
         && tubes(a) == tubes(b)
         && a.joints == b.joints
+        && a.sleeves == b.sleeves
 }

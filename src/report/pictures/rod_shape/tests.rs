@@ -39,6 +39,7 @@ fn tubes_are_to_scale_and_what_is_around_them_is_not() {
         to_mm,
         outer_mm: [32.0; 2],
         inner_mm: [30.0; 2],
+        is_sleeve: false,
     };
     rod.tubes = vec![tube(0.0, 150.0), tube(150.0, 675.0)];
     let at = |at_mm| Station { label: "ring".into(), at_mm, kind: StationKind::Mass };

@@ -143,8 +143,10 @@ pub(super) fn in_other_units(rod: &Rod) -> Vec<Meant> {
 fn moduli_in_other_units(rod: &Rod) -> Vec<Meant> {
     let mut found = Vec::new();
     let mut materials: Vec<&str> = vec![&rod.pipe1.material.name];
-    if rod.pipe2.material.name != rod.pipe1.material.name {
-        materials.push(&rod.pipe2.material.name);
+    for pipe in std::iter::once(&rod.pipe2).chain(rod.sleeves.iter().map(|sleeve| &sleeve.pipe)) {
+        if !materials.contains(&pipe.material.name.as_str()) {
+            materials.push(&pipe.material.name);
+        }
     }
     for material in materials {
         for unit in MODULI {
@@ -155,7 +157,7 @@ fn moduli_in_other_units(rod: &Rod) -> Vec<Meant> {
                 (1.0, factor, "shear_modulus_gpa"),
             ] {
                 let mut meant = rod.clone();
-                for pipe in [&mut meant.pipe1, &mut meant.bend, &mut meant.pipe2] {
+                for pipe in meant.pipes_mut() {
                     if pipe.material.name == material {
                         pipe.material.youngs_modulus *= e;
                         pipe.material.shear_modulus *= g;

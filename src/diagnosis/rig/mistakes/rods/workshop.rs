@@ -32,4 +32,5 @@ pub(super) fn is_possible(rod: &Rod) -> bool {
         && rod.gamma > 0.0
         && rod.gamma <= std::f64::consts::PI + 1e-9
         && rod.joints.iter().all(|joint| joint.station <= rod.length())
+        && rod.sleeves.iter().all(|sleeve| is_pipe(&sleeve.pipe) && sleeve.to <= rod.length())
 }

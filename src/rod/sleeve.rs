@@ -1,0 +1,119 @@
+//! Sleeves that stiffen: a second pipe over, or in, a stretch of a straight pipe.
+//!
+//! Both are taken as bonded all along and concentric, so that they share every strain and their
+//! stiffnesses EA, κGA, EI and GJ add up (J. M. Gere, *Mechanics of Materials*, 6th ed., § 6.2,
+//! composite beams). At the ends of a real sleeve the adhesive takes about a diameter to hand the
+//! load over: the sleeve bears a little less than that.
+
+use super::{Pipe, Rod, Sleeve};
+use crate::dual::Number;
+use crate::section::Section;
+use crate::units::MM;
+
+/// What a stretch may miss of the pipe that holds it, m: stations of files are rounded.
+const ROUNDED: f64 = 1e-6;
+
+/// How far a press fit may overlap, m, on the diameter.
+const PRESS_FIT: f64 = 0.1e-3;
+
+impl<T: Number> Rod<T> {
+    /// The pipe at a station, m; at the corner or an end of the bend that beyond it.
+    pub fn pipe_at(&self, station: T) -> &Pipe<T> {
+        match station.value() {
+            at if at < self.bend_start().value() => &self.pipe1,
+            at if at < self.bend_end().value() => &self.bend,
+            _ => &self.pipe2,
+        }
+    }
+
+    /// The pipe at a station (m) and the sleeves that bear with it: all that shares the load there.
+    ///
+    /// ```
+    /// use rodcal::prelude::*;
+    ///
+    /// let steel = Material::isotropic("steel", 193e9, 0.29, 7930.0);
+    /// let collar = Pipe::new(Round::tube(0.020, 0.016), steel.clone());
+    /// let rod = Rod::new("L", 0.150, 0.525, Pipe::new(Round::tube(0.016, 0.012), steel))
+    ///     .with_sleeve("collar", 0.100, 0.140, collar)
+    ///     .checked()?;
+    /// assert_eq!(rod.bearing_at(0.120).count(), 2);
+    /// assert_eq!(rod.bearing_at(0.145).count(), 1);
+    /// # Ok::<(), rodcal::Error>(())
+    /// ```
+    pub fn bearing_at(&self, station: T) -> impl Iterator<Item = &Pipe<T>> {
+        let at = station.value();
+        let is_straight = at < self.bend_start().value() || at >= self.bend_end().value();
+        let covers = move |sleeve: &&Sleeve<T>| sleeve.from.value() <= at && at < sleeve.to.value();
+        let sleeves = self.sleeves.iter().filter(move |_| is_straight).filter(covers);
+        std::iter::once(self.pipe_at(station)).chain(sleeves.map(|sleeve| &sleeve.pipe))
+    }
+
+    /// The stretches between which what bears does not change, m: the pipes', cut where a sleeve
+    /// begins or ends. A corner or bend without length is none.
+    pub fn stretches(&self) -> Vec<[T; 2]> {
+        let mut cuts = vec![T::zero(), self.bend_start(), self.bend_end(), self.length()];
+        cuts.extend(self.sleeves.iter().flat_map(|sleeve| [sleeve.from, sleeve.to]));
+        cuts.sort_by(|a, b| a.value().total_cmp(&b.value()));
+        cuts.windows(2)
+            .filter(|ends| ends[1].value() > ends[0].value())
+            .map(|ends| [ends[0], ends[1]])
+            .collect()
+    }
+
+    /// All pipes: pipe 1, the bend's, pipe 2 and the sleeves'.
+    pub fn pipes_mut(&mut self) -> impl Iterator<Item = &mut Pipe<T>> {
+        let sleeves = self.sleeves.iter_mut().map(|sleeve| &mut sleeve.pipe);
+        [&mut self.pipe1, &mut self.bend, &mut self.pipe2].into_iter().chain(sleeves)
+    }
+
+    /// Stations of what sits along the rod: masses, joints and both ends of sleeves.
+    pub fn stations_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        let masses = self.masses.iter_mut().map(|mass| &mut mass.station);
+        let joints = self.joints.iter_mut().map(|joint| &mut joint.station);
+        let sleeves = self.sleeves.iter_mut().flat_map(|sleeve| [&mut sleeve.from, &mut sleeve.to]);
+        masses.chain(joints).chain(sleeves)
+    }
+}
+
+impl Rod {
+    /// Why a stretch from station `from` to `to` (m) cannot carry a sleeve: what would be right.
+    pub(super) fn no_stretch(&self, from: f64, to: f64) -> Option<String> {
+        let (start, end, length) = (self.bend_start(), self.bend_end(), self.length());
+        let holds = |a: f64, b: f64| from >= a - ROUNDED && to <= b + ROUNDED;
+        if from < to && (holds(0.0, start) || holds(end, length)) {
+            return None;
+        }
+        // as a drawing has it: 150, not 150.000
+        let mm = |station: f64| (station / MM * 1e3).round() / 1e3;
+        Some(format!(
+            "a stretch of one straight pipe, 0 to {} mm or {} to {} mm, its end beyond its beginning",
+            mm(start),
+            mm(end),
+            mm(length)
+        ))
+    }
+
+    /// A pipe or sleeve whose wall would be where that of `section` is, along a stretch from
+    /// `from` to `to` (m), by its name. Of rounds; other sections are not compared.
+    pub(super) fn in_the_way(&self, section: &Section, from: f64, to: f64) -> Option<String> {
+        let is_through = |other: &Section| match (section.as_round(), other.as_round()) {
+            (Some(a), Some(b)) => {
+                a.inner_diameter + PRESS_FIT < b.outer_diameter
+                    && b.inner_diameter + PRESS_FIT < a.outer_diameter
+            }
+            _ => false,
+        };
+        let middle = 0.5 * (from + to);
+        let (name, pipe) = match middle < self.bend_start() {
+            true => ("pipe1", &self.pipe1),
+            false => ("pipe2", &self.pipe2),
+        };
+        let overlaps = |sleeve: &&Sleeve| sleeve.from < to - ROUNDED && sleeve.to > from + ROUNDED;
+        let sleeves = self.sleeves.iter().filter(overlaps);
+        let sleeves = sleeves.map(|sleeve| (format!("sleeve \"{}\"", sleeve.name), &sleeve.pipe.section));
+        std::iter::once((name.to_owned(), &pipe.section))
+            .chain(sleeves)
+            .find(|(_, other)| is_through(other))
+            .map(|(name, _)| name)
+    }
+}

@@ -206,6 +206,12 @@ fn what_is_odd_about_a_rod_is_said_of_its_campaign_too() {
         let answer = sandbox.run(&format!("{command} {CAMPAIGN}"));
         let expected = "5.toml: `material.steel.density_kg_m3` is 7.930 kg/m³";
         assert!(answer.stderr.contains(expected), "{command}: {}", answer.stderr);
+        if command == "diagnose calibration" {
+            // whatever it was taken for
+            let headline = answer.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+            assert!(headline.starts_with("`material.steel.density_kg_m3` of "), "{headline}");
+            assert!(headline.contains("check that first"), "{headline}");
+        }
     }
 }
 
@@ -229,5 +235,7 @@ fn a_tip_far_from_where_the_rods_file_has_it_is_said() {
         for said in [&calibrated.stderr, &diagnosed.stderr, &diagnosed.stdout.replace('\n', " ")] {
             assert_eq!(said.contains(expected), is_said, "{said}");
         }
+        // before what was made of it
+        assert_eq!(diagnosed.stdout.starts_with("The tip is "), is_said, "{}", diagnosed.stdout);
     }
 }

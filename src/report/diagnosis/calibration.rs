@@ -12,7 +12,7 @@ use super::headline::um;
 use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, LawNote, LawSubject, Subject};
 use super::{json as whole_json, report as whole_report};
-use crate::calibration::campaign::Targets;
+use crate::calibration::campaign::{self, Targets};
 use crate::calibration::{MOST_SCATTER, Warning};
 use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, law_destination, remark};
 use crate::inference::{
@@ -21,6 +21,7 @@ use crate::inference::{
 use crate::report::calibration::warnings as of_calibration;
 use crate::report::{Block, Report, Section};
 use crate::robot::{Motion, is_urdf};
+use crate::rod;
 use crate::units::{DEG, MM, UM, significant};
 
 /// Coordinates of a pose.
@@ -108,6 +109,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
             held_out: distances.held_out_means(),
         },
         before_correction: model.recorded.map(|recorded| recorded.rms / 3.0f64.sqrt()),
+        doubtful: doubtful(found),
         nominal: far_from_file(found),
         suspect: Box::new(|datum| {
             let row = &campaign.measurements.rows[datum / 3];
@@ -157,18 +159,35 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
     }
 }
 
-/// A number that the calibration has put far from the rod's or the robot's file: no error of the
-/// poses, but hardly what the file means.
-fn far_from_file(found: &CalibrationDiagnosis) -> Option<String> {
-    let calibration = &found.model.calibration;
-    let of_tip = calibration.warnings.iter().find_map(|warning| match warning {
-        Warning::TipElsewhere { calibrated, of_rod } => Some((calibrated - of_rod).norm()),
+/// What makes the rod's file one that may not be meant: a number that no rod has, a tip elsewhere.
+fn doubtful(found: &CalibrationDiagnosis) -> Option<String> {
+    let unusual = found.model.campaign.warnings.iter().find_map(|warning| match warning {
+        campaign::Warning::Rod { file, warning: rod::Warning::Unusual { key, value, unit, least, most } } => {
+            let value = significant(*value, 4);
+            Some(format!(
+                "`{key}` of {file} is {value} {unit}, where {least} to {most} {unit} is usual: check that first, \
+                 for what follows takes it as stated."
+            ))
+        }
         _ => None,
     });
-    if let Some(off) = of_tip {
-        let off = significant(off / MM, 3);
-        return Some(format!("The tip is {off} mm from where the rod's file has it."));
-    }
+    let elsewhere = || {
+        found.model.calibration.warnings.iter().find_map(|warning| match warning {
+            Warning::TipElsewhere { calibrated, of_rod } => Some(format!(
+                "The tip is {} mm from where the rod's file has it: is that the file of this rod? What follows \
+                 takes it as stated.",
+                significant((calibrated - of_rod).norm() / MM, 3)
+            )),
+            _ => None,
+        })
+    };
+    unusual.or_else(elsewhere)
+}
+
+/// A parameter that the calibration has put far from the robot's file: no error of the poses, but
+/// hardly what the file means.
+fn far_from_file(found: &CalibrationDiagnosis) -> Option<String> {
+    let calibration = &found.model.calibration;
     let known = &calibration.setup.robot.standard_uncertainty;
     let far = calibration.warnings.iter().filter_map(|warning| match warning {
         Warning::FarFromDrawing { parameter, correction, .. }

@@ -21,10 +21,14 @@ pub const RIVALS_SAID: usize = 2;
 /// What was found, and what it does to the errors.
 pub fn headline(subject: &Subject) -> String {
     // residuals of a fit that stopped somewhere say little, and agree with nothing
-    match subject.limits.contains(&Limitation::NotConverged) {
+    let words = match subject.limits.contains(&Limitation::NotConverged) {
         true if !subject.diagnosis.is_mismatch() => Limitation::NotConverged.to_string(),
         true => format!("{} {}", Limitation::NotConverged, answer(subject)),
         false => answer(subject),
+    };
+    match &subject.doubtful {
+        Some(doubtful) => format!("{doubtful} {words}"),
+        None => words,
     }
 }
 

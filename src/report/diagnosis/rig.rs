@@ -65,6 +65,8 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
             held_out: diagnosis.held_out.as_ref().map(|errors| (errors.before, errors.after)),
         },
         before_correction: model.recorded_error(),
+        // units of the rod file's keys are among the mistakes
+        doubtful: None,
         nominal: nominal(found),
         suspect: Box::new(|datum| {
             let datum = &model.data()[datum];

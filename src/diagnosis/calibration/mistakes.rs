@@ -239,6 +239,7 @@ impl Mended {
 fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Options) -> Result<Mended> {
     let mut mended = Mended::unchanged(campaign, mode, options);
     let draft = Draft::of(campaign);
+    let readings = moves::robots::readings(campaign);
     let compensation = Compensation::new(campaign, mode)?;
     let mut bodies = vec![LoadedRobot::new(&campaign.robot, compensation.clone(), campaign.tool, &draft)];
     let mut meant = Vec::new();
@@ -262,11 +263,16 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Option
         forces.push((bodies.len(), factor));
         bodies.push(bodies[0].with_contact_force_times(factor));
     }
+    let mut robots = Vec::new();
+    for reading in &readings {
+        robots.push((bodies.len(), reading));
+        bodies.push(LoadedRobot::new(&reading.robot, compensation.clone(), campaign.tool, &draft));
+    }
     let mut silent = columns::silent(campaign, &draft);
     let held = held(&draft);
     silent.extend(mostly_held(&draft, &held));
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
-    let moves = moves::all(campaign, &draft, &meant, &forces);
+    let moves = moves::all(campaign, &draft, &meant, &forces, &robots);
     let of_rows = moves::of_rows::of_rows(campaign, &draft);
     let tip_mass = campaign.rod.as_ref().map_or(0.0, |rod| rod.tip_mass);
     let whole = draft.clone();
@@ -300,8 +306,11 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Option
     }
     if !best.steps.is_empty() {
         mended.is_changed = true;
-        mended.undo(campaign, others, &search, &best, &meant)?;
         let body = search.changed(&best.steps).body;
+        if let Some((_, reading)) = robots.iter().find(|(own, _)| *own == body) {
+            mended.means(&reading.robot)?;
+        }
+        mended.undo(campaign, others, &search, &best, &meant)?;
         if let Some((_, factor)) = forces.iter().find(|(own, _)| *own == body) {
             mended.campaign.contact_force = campaign.contact_force.map(|force| force * *factor);
         }

@@ -39,7 +39,7 @@ pub static SWAP_MISTAKE: Effect = Effect {
 /// Radians, metres, inches.
 pub static UNIT_MISTAKE: Effect = Effect {
     name: "unit_mistake",
-    summary: "angles or positions are in another unit",
+    summary: "angles, positions, forces or numbers of the robot file are in another unit",
     formula: "true = factor × recorded",
     parameters: &[(&["factor"], "what the numbers must be multiplied by")],
     needs: "joints that move",

@@ -6,6 +6,7 @@ mod frames;
 mod joints;
 pub(super) mod of_rows;
 mod positions;
+pub(super) mod robots;
 
 use nalgebra::Vector3;
 
@@ -59,6 +60,7 @@ pub(super) fn all(
     draft: &Draft,
     others: &[Other],
     forces: &[(usize, f64)],
+    robots: &[(usize, &robots::Reading)],
 ) -> Vec<PossibleMistake> {
     let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: false };
     list.joints();
@@ -69,6 +71,7 @@ pub(super) fn all(
     list.tool();
     list.files(others);
     list.contact_forces(forces);
+    list.robots(robots);
     list.moves
 }
 

@@ -21,6 +21,13 @@ use crate::units::UM;
 const CURED: f64 = 0.5;
 
 impl Mended {
+    /// The robot that its file means, which is written anew.
+    pub(in super::super) fn means(&mut self, robot: &Robot) -> Result<()> {
+        self.campaign.robot = robot.clone();
+        self.campaign.robot_text = robot.to_toml(&["CORRECTED: as it was meant.".into()])?;
+        Ok(())
+    }
+
     /// The campaign that was meant.
     pub(in super::super) fn undo(
         &mut self,

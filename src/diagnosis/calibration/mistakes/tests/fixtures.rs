@@ -96,3 +96,41 @@ fn a_contact_force_in_another_unit() {
     let twice = Campaign { contact_force: right.contact_force.map(|force| force * 2.0), ..right };
     assert_eq!(found(&twice), []);
 }
+
+/// The arm of the campaign with numbers of its file in another unit, or mounted another way than
+/// they say.
+#[test]
+fn a_robot_file_in_other_units_or_of_a_robot_on_a_wall() {
+    type Change = fn(&mut Robot);
+    let cases: [(Change, &str); 7] = [
+        (|robot| scaled(robot, 1e3), "Multiply a_mm and d_mm of all joints by 1000"),
+        (|robot| scaled(robot, 25.4), "Multiply a_mm and d_mm of all joints by 25.4"),
+        (|robot| robot.gravity /= 9.80665, "Multiply gravity_m_s2 by 9.80665"),
+        (|robot| robot.gravity *= 1e3, "Multiply gravity_m_s2 by 0.001"),
+        (|robot| robot.gravity /= 0.3048, "Multiply gravity_m_s2 by 0.3048"),
+        (|robot| robot.gravity *= -1.0, "Multiply gravity_m_s2 by −1"),
+        (|robot| robot.gravity = Vector3::new(9.80665, 0.0, 0.0), "Let gravity_m_s2 point along −z"),
+    ];
+    for (change, expected) in cases {
+        let mut wrong = tx90();
+        wrong.robot_file = "tx90.toml".into();
+        change(&mut wrong.robot);
+        assert_eq!(cure(&wrong), expected);
+        // and it is written as it was meant
+        let meant = mended(&wrong).campaign;
+        let read = Robot::from_text("tx90.toml", &meant.robot_text, None, None).unwrap();
+        let right = tx90().robot;
+        assert!((read.gravity - right.gravity).norm() < 1e-9 && (read.joints[1].link.a - 0.425).abs() < 1e-9);
+    }
+    // as it is, nothing
+    let mut right = tx90();
+    right.robot_file = "tx90.toml".into();
+    assert_eq!(found(&right), []);
+}
+
+fn scaled(robot: &mut Robot, by: f64) {
+    for joint in &mut robot.joints {
+        joint.link.a /= by;
+        joint.link.d /= by;
+    }
+}

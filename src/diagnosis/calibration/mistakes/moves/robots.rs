@@ -1,0 +1,124 @@
+//! Robots that the robot file means where numbers of it are in another unit or point elsewhere.
+
+use nalgebra::Vector3;
+
+use super::super::super::effects::mistakes::{FRAME_MISTAKE, SIGN_MISTAKE, UNIT_MISTAKE};
+use super::super::draft::DraftChange;
+use super::{List, RARE, UNUSUAL, exact};
+use crate::calibration::campaign::Campaign;
+use crate::inference::{Effect, Estimate, Key};
+use crate::robot::{Robot, is_urdf};
+use crate::units::STANDARD_GRAVITY;
+
+/// A robot as its file may be meant.
+pub struct Reading {
+    pub robot: Robot,
+    effect: &'static Effect,
+    key: &'static str,
+    log_prior: f64,
+    estimates: Vec<Estimate>,
+    cure: String,
+    why: &'static str,
+}
+
+const GRAVITY: &str = "gravity_m_s2";
+/// How far gravity may be from its standard value on Earth, as a share.
+const ON_EARTH: f64 = 0.01;
+
+/// What a table may mean; a robot of the program's own, or one of a URDF, which has other keys and
+/// no gravity, means what it says.
+pub fn readings(campaign: &Campaign) -> Vec<Reading> {
+    if campaign.robot_file.starts_with("builtin:") || is_urdf(&campaign.robot_text) {
+        return Vec::new();
+    }
+    lengths(&campaign.robot).chain(gravity(campaign)).collect()
+}
+
+/// Links in metres, centimetres, inches.
+fn lengths(robot: &Robot) -> impl Iterator<Item = Reading> {
+    let units = [
+        (1e3, "they are in metres, not in millimetres"),
+        (10.0, "they are in centimetres, not in millimetres"),
+        (25.4, "they are in inches, not in millimetres"),
+    ];
+    units.into_iter().map(|(factor, why)| {
+        let mut robot = robot.clone();
+        for joint in &mut robot.joints {
+            joint.link.a *= factor;
+            joint.link.d *= factor;
+        }
+        Reading {
+            robot,
+            effect: &UNIT_MISTAKE,
+            key: "a_mm and d_mm",
+            log_prior: UNUSUAL,
+            estimates: exact("factor", factor),
+            cure: format!("Multiply a_mm and d_mm of all joints by {factor}"),
+            why,
+        }
+    })
+}
+
+/// Gravity in another unit, or along another axis of {0}: of a robot on a wall, or under a ceiling.
+fn gravity(campaign: &Campaign) -> Vec<Reading> {
+    let given = campaign.robot.gravity;
+    let with = |gravity: Vector3<f64>| Robot { gravity, ..campaign.robot.clone() };
+    let is_on_earth = |size: f64| (size / STANDARD_GRAVITY - 1.0).abs() < ON_EARTH;
+    let units = [
+        (STANDARD_GRAVITY, "9.80665", "it is in g, not in m/s²"),
+        (1e-3, "0.001", "it is in mm/s², not in m/s²"),
+        (0.01, "0.01", "it is in cm/s², not in m/s²"),
+        (0.3048, "0.3048", "it is in feet per s², not in m/s²"),
+    ];
+    let meant = |(factor, by, why): (f64, &str, &'static str)| {
+        let robot = with(given * factor);
+        is_on_earth(robot.gravity.norm()).then(|| Reading {
+            robot,
+            effect: &UNIT_MISTAKE,
+            key: GRAVITY,
+            log_prior: 0.0,
+            estimates: exact("factor", factor),
+            cure: format!("Multiply {GRAVITY} by {by}"),
+            why,
+        })
+    };
+    let mut all: Vec<Reading> = units.into_iter().filter_map(meant).collect();
+    // along another axis it is as large
+    if is_on_earth(given.norm()) {
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            for (sign, mark) in [(1.0, ""), (-1.0, "−")] {
+                let mut other = Vector3::zeros();
+                other[axis] = sign * given.norm();
+                let cosine = other.dot(&given) / given.norm_squared();
+                if cosine > 1.0 - ON_EARTH {
+                    continue;
+                }
+                let is_opposite = cosine < ON_EARTH - 1.0;
+                all.push(Reading {
+                    robot: with(if is_opposite { -given } else { other }),
+                    effect: if is_opposite { &SIGN_MISTAKE } else { &FRAME_MISTAKE },
+                    key: GRAVITY,
+                    log_prior: if is_opposite { UNUSUAL } else { RARE },
+                    estimates: Vec::new(),
+                    cure: match is_opposite {
+                        true => format!("Multiply {GRAVITY} by −1"),
+                        false => format!("Let {GRAVITY} point along {mark}{name}"),
+                    },
+                    why: "the robot's base is mounted another way than its file says",
+                });
+            }
+        }
+    }
+    all
+}
+
+impl List<'_> {
+    /// Bodies with robots that may be meant.
+    pub fn robots(&mut self, readings: &[(usize, &Reading)]) {
+        for (body, reading) in readings {
+            let Reading { effect, key, log_prior, estimates, cure, why, .. } = reading;
+            let found = self.add(effect, Key::new(*key), DraftChange::Body(*body, None), cure, why);
+            (found.log_prior, found.estimates) = (*log_prior, estimates.clone());
+        }
+    }
+}

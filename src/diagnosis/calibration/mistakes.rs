@@ -89,6 +89,8 @@ pub struct Mended {
     pub is_changed: bool,
     /// False where columns hold no information, so that physics cannot be seen.
     pub has_data: bool,
+    /// True where the rod is not the one of its file.
+    is_rod_rewritten: bool,
     /// How it is calibrated.
     options: Options,
     /// Errors of a calibration on what was recorded; `None` where nothing was found.
@@ -154,6 +156,7 @@ impl Mended {
             suspicions: Vec::new(),
             is_changed: false,
             has_data: true,
+            is_rod_rewritten: false,
             options: *options,
             recorded: None,
         }
@@ -205,6 +208,17 @@ impl Mended {
     /// # Errors
     /// As [`apply`](fn@apply).
     pub fn apply(&self, found: &CalibrationDiagnosis, names: &FileNames) -> Result<Option<Applied>> {
+        let mut applied = self.corrected(found, names)?;
+        if let (true, Some(applied)) = (self.is_rod_rewritten, &mut applied)
+            && let (Some(name), Some(rod)) = (&names.rod, &self.campaign.rod)
+            && applied.files.iter().all(|(file, _)| file != name)
+        {
+            applied.files.push((name.clone(), rod.to_toml(&["CORRECTED: as it was meant.".into()])));
+        }
+        Ok(applied)
+    }
+
+    fn corrected(&self, found: &CalibrationDiagnosis, names: &FileNames) -> Result<Option<Applied>> {
         let undone: Vec<String> =
             self.found.iter().map(|finding| finding.description.observed.clone()).collect();
         if let Some(applied) = apply(found, names, &undone)? {
@@ -268,11 +282,21 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Option
         robots.push((bodies.len(), reading));
         bodies.push(LoadedRobot::new(&reading.robot, compensation.clone(), campaign.tool, &draft));
     }
+    let mut exchanged = None;
+    if let Some(rod) = moves::rods::exchanged(campaign) {
+        let with = Campaign { rod: Some(rod.clone()), ..campaign.clone() };
+        if let Ok(compensation) = Compensation::new(&with, mode) {
+            let tip = if campaign.tool_is_given { campaign.tool } else { rod.tip() };
+            exchanged = Some((bodies.len(), rod));
+            bodies.push(LoadedRobot::new(&campaign.robot, compensation, tip, &draft));
+        }
+    }
+    let exchanged = exchanged.as_ref().map(|(body, rod)| (*body, rod));
     let mut silent = columns::silent(campaign, &draft);
     let held = held(&draft);
     silent.extend(mostly_held(&draft, &held));
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
-    let moves = moves::all(campaign, &draft, &meant, &forces, &robots);
+    let moves = moves::all(campaign, &draft, &meant, &forces, &robots, exchanged);
     let of_rows = moves::of_rows::of_rows(campaign, &draft);
     let tip_mass = campaign.rod.as_ref().map_or(0.0, |rod| rod.tip_mass);
     let whole = draft.clone();
@@ -309,6 +333,10 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Option
         let body = search.changed(&best.steps).body;
         if let Some((_, reading)) = robots.iter().find(|(own, _)| *own == body) {
             mended.means(&reading.robot)?;
+        }
+        if let Some((_, rod)) = exchanged.filter(|(own, _)| *own == body) {
+            mended.campaign.rod = Some(rod.clone());
+            mended.is_rod_rewritten = true;
         }
         mended.undo(campaign, others, &search, &best, &meant)?;
         if let Some((_, factor)) = forces.iter().find(|(own, _)| *own == body) {

@@ -7,6 +7,7 @@ mod joints;
 pub(super) mod of_rows;
 mod positions;
 pub(super) mod robots;
+pub(super) mod rods;
 
 use nalgebra::Vector3;
 
@@ -15,6 +16,7 @@ use super::draft::{Draft, DraftChange};
 use super::names::column;
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Estimate, Key};
+use crate::rod::Rod;
 
 /// Ln of how much rarer some mistakes are.
 const UNUSUAL: f64 = -1.0;
@@ -61,6 +63,7 @@ pub(super) fn all(
     others: &[Other],
     forces: &[(usize, f64)],
     robots: &[(usize, &robots::Reading)],
+    exchanged: Option<(usize, &Rod)>,
 ) -> Vec<PossibleMistake> {
     let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: false };
     list.joints();
@@ -72,6 +75,7 @@ pub(super) fn all(
     list.files(others);
     list.contact_forces(forces);
     list.robots(robots);
+    list.exchanged_pipes(exchanged);
     list.moves
 }
 

@@ -2,13 +2,13 @@
 
 use nalgebra::Vector3;
 
-use super::super::super::effects::mistakes::{FRAME_MISTAKE, SIGN_MISTAKE, UNIT_MISTAKE};
+use super::super::super::effects::mistakes::{FRAME_MISTAKE, SIGN_MISTAKE, TYPING_MISTAKE, UNIT_MISTAKE};
 use super::super::draft::DraftChange;
 use super::{List, RARE, UNUSUAL, exact};
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Estimate, Key};
 use crate::robot::{Robot, is_urdf};
-use crate::units::STANDARD_GRAVITY;
+use crate::units::{DEG, STANDARD_GRAVITY};
 
 /// A robot as its file may be meant.
 pub struct Reading {
@@ -31,7 +31,7 @@ pub fn readings(campaign: &Campaign) -> Vec<Reading> {
     if campaign.robot_file.starts_with("builtin:") || is_urdf(&campaign.robot_text) {
         return Vec::new();
     }
-    lengths(&campaign.robot).chain(gravity(campaign)).collect()
+    lengths(&campaign.robot).chain([radians(&campaign.robot)]).chain(gravity(campaign)).collect()
 }
 
 /// Links in metres, centimetres, inches.
@@ -59,6 +59,26 @@ fn lengths(robot: &Robot) -> impl Iterator<Item = Reading> {
     })
 }
 
+/// Angles of links in radians.
+fn radians(robot: &Robot) -> Reading {
+    let factor = 1.0 / DEG;
+    let mut robot = robot.clone();
+    for joint in &mut robot.joints {
+        joint.link.theta *= factor;
+        joint.link.alpha *= factor;
+        joint.link.beta *= factor;
+    }
+    Reading {
+        robot,
+        effect: &UNIT_MISTAKE,
+        key: "theta_offset_deg, alpha_deg and beta_deg",
+        log_prior: UNUSUAL,
+        estimates: exact("factor", factor),
+        cure: "Multiply theta_offset_deg, alpha_deg and beta_deg of all joints by 57.2958".into(),
+        why: "they are in radians, not in degrees",
+    }
+}
+
 /// Gravity in another unit, or along another axis of {0}: of a robot on a wall, or under a ceiling.
 fn gravity(campaign: &Campaign) -> Vec<Reading> {
     let given = campaign.robot.gravity;
@@ -83,6 +103,17 @@ fn gravity(campaign: &Campaign) -> Vec<Reading> {
         })
     };
     let mut all: Vec<Reading> = units.into_iter().filter_map(meant).collect();
+    if given == Vector3::zeros() {
+        all.push(Reading {
+            robot: with(Vector3::new(0.0, 0.0, -STANDARD_GRAVITY)),
+            effect: &TYPING_MISTAKE,
+            key: GRAVITY,
+            log_prior: 0.0,
+            estimates: Vec::new(),
+            cure: format!("Write {GRAVITY} = [0.0, 0.0, -9.80665]"),
+            why: "the arm has weight",
+        });
+    }
     // along another axis it is as large
     if is_on_earth(given.norm()) {
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {

@@ -2,6 +2,7 @@
 //! unit.
 
 use super::*;
+use crate::rod::Rod;
 
 /// The campaign of the TX90 with another frame of one of its five clamps; what the devices showed
 /// stays.
@@ -102,13 +103,15 @@ fn a_contact_force_in_another_unit() {
 #[test]
 fn a_robot_file_in_other_units_or_of_a_robot_on_a_wall() {
     type Change = fn(&mut Robot);
-    let cases: [(Change, &str); 7] = [
+    let cases: [(Change, &str); 9] = [
         (|robot| scaled(robot, 1e3), "Multiply a_mm and d_mm of all joints by 1000"),
         (|robot| scaled(robot, 25.4), "Multiply a_mm and d_mm of all joints by 25.4"),
         (|robot| robot.gravity /= 9.80665, "Multiply gravity_m_s2 by 9.80665"),
         (|robot| robot.gravity *= 1e3, "Multiply gravity_m_s2 by 0.001"),
         (|robot| robot.gravity /= 0.3048, "Multiply gravity_m_s2 by 0.3048"),
         (|robot| robot.gravity *= -1.0, "Multiply gravity_m_s2 by −1"),
+        (|robot| robot.gravity = Vector3::zeros(), "Write gravity_m_s2 = [0.0, 0.0, -9.80665]"),
+        (in_radians, "Multiply theta_offset_deg, alpha_deg and beta_deg of all joints by 57.2958"),
         (|robot| robot.gravity = Vector3::new(9.80665, 0.0, 0.0), "Let gravity_m_s2 point along −z"),
     ];
     for (change, expected) in cases {
@@ -126,6 +129,26 @@ fn a_robot_file_in_other_units_or_of_a_robot_on_a_wall() {
     let mut right = tx90();
     right.robot_file = "tx90.toml".into();
     assert_eq!(found(&right), []);
+}
+
+fn in_radians(robot: &mut Robot) {
+    for joint in &mut robot.joints {
+        joint.link.theta *= DEG;
+        joint.link.alpha *= DEG;
+        joint.link.beta *= DEG;
+    }
+}
+
+/// Nothing else tells the pipes of a rod apart than where its tip is and how it bends.
+#[test]
+fn a_rod_whose_pipes_are_exchanged() {
+    let right = tx90();
+    let rod = right.rod.clone().unwrap();
+    let exchanged = Rod { l1: rod.l2, l2: rod.l1, ..rod.clone() };
+    let wrong = Campaign { tool: exchanged.tip(), rod: Some(exchanged), ..right.clone() };
+    let mended = mended(&wrong);
+    assert_eq!(cure(&wrong), "Exchange l1_mm and l2_mm of the rod's file");
+    assert_eq!((mended.campaign.rod, mended.campaign.tool), (Some(rod), right.tool));
 }
 
 fn scaled(robot: &mut Robot, by: f64) {

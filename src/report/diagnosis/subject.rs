@@ -35,8 +35,8 @@ pub struct Subject<'a> {
     pub errors: Errors,
     /// Root mean square before mistakes were corrected, m, where there were any.
     pub before_correction: Option<f64>,
-    /// A number of a file that hardly is what its key asks for, in a sentence: it is said first, for
-    /// whatever was found may be made of it.
+    /// A number of a file that hardly is what its key asks for, in a sentence: it is said first,
+    /// for whatever was found may be made of it.
     pub doubtful: Option<String>,
     /// What the nominal numbers explain, in a sentence.
     pub nominal: Option<String>,

@@ -16,6 +16,7 @@ use super::draft::{Draft, DraftChange};
 use super::names::column;
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Estimate, Key};
+use crate::robot::Robot;
 use crate::rod::Rod;
 
 /// Ln of how much rarer some mistakes are.
@@ -45,6 +46,17 @@ impl PossibleMistake {
     }
 }
 
+/// A robot as its file may be meant.
+pub struct Reading {
+    pub robot: Robot,
+    effect: &'static Effect,
+    key: &'static str,
+    log_prior: f64,
+    estimates: Vec<Estimate>,
+    cure: String,
+    why: &'static str,
+}
+
 /// A robot or rod of another file.
 pub(super) struct Other {
     pub file: String,
@@ -62,7 +74,7 @@ pub(super) fn all(
     draft: &Draft,
     others: &[Other],
     forces: &[(usize, f64)],
-    robots: &[(usize, &robots::Reading)],
+    robots: &[(usize, &Reading)],
     exchanged: Option<(usize, &Rod)>,
 ) -> Vec<PossibleMistake> {
     let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: false };

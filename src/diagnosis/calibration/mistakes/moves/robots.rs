@@ -1,25 +1,14 @@
-//! Robots that the robot file means where numbers of it are in another unit or point elsewhere.
+//! Robots that the robot file means where numbers of it are in another unit.
 
 use nalgebra::Vector3;
 
-use super::super::super::effects::mistakes::{FRAME_MISTAKE, SIGN_MISTAKE, TYPING_MISTAKE, UNIT_MISTAKE};
+use super::super::super::effects::mistakes::{TYPING_MISTAKE, UNIT_MISTAKE};
 use super::super::draft::DraftChange;
-use super::{List, RARE, UNUSUAL, exact};
+use super::{List, Reading, UNUSUAL, exact};
 use crate::calibration::campaign::Campaign;
-use crate::inference::{Effect, Estimate, Key};
+use crate::inference::Key;
 use crate::robot::{Robot, is_urdf};
 use crate::units::{DEG, STANDARD_GRAVITY};
-
-/// A robot as its file may be meant.
-pub struct Reading {
-    pub robot: Robot,
-    effect: &'static Effect,
-    key: &'static str,
-    log_prior: f64,
-    estimates: Vec<Estimate>,
-    cure: String,
-    why: &'static str,
-}
 
 const GRAVITY: &str = "gravity_m_s2";
 /// How far gravity may be from its standard value on Earth, as a share.
@@ -79,7 +68,8 @@ fn radians(robot: &Robot) -> Reading {
     }
 }
 
-/// Gravity in another unit, or along another axis of {0}: of a robot on a wall, or under a ceiling.
+/// Gravity in another unit, or none. Along another axis of {0} it is as large, and no reading of the
+/// file: a clamp that stands aside was taken for it.
 fn gravity(campaign: &Campaign) -> Vec<Reading> {
     let given = campaign.robot.gravity;
     let with = |gravity: Vector3<f64>| Robot { gravity, ..campaign.robot.clone() };
@@ -113,32 +103,6 @@ fn gravity(campaign: &Campaign) -> Vec<Reading> {
             cure: format!("Write {GRAVITY} = [0.0, 0.0, -9.80665]"),
             why: "the arm has weight",
         });
-    }
-    // along another axis it is as large
-    if is_on_earth(given.norm()) {
-        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            for (sign, mark) in [(1.0, ""), (-1.0, "−")] {
-                let mut other = Vector3::zeros();
-                other[axis] = sign * given.norm();
-                let cosine = other.dot(&given) / given.norm_squared();
-                if cosine > 1.0 - ON_EARTH {
-                    continue;
-                }
-                let is_opposite = cosine < ON_EARTH - 1.0;
-                all.push(Reading {
-                    robot: with(if is_opposite { -given } else { other }),
-                    effect: if is_opposite { &SIGN_MISTAKE } else { &FRAME_MISTAKE },
-                    key: GRAVITY,
-                    log_prior: if is_opposite { UNUSUAL } else { RARE },
-                    estimates: Vec::new(),
-                    cure: match is_opposite {
-                        true => format!("Multiply {GRAVITY} by −1"),
-                        false => format!("Let {GRAVITY} point along {mark}{name}"),
-                    },
-                    why: "the robot's base is mounted another way than its file says",
-                });
-            }
-        }
     }
     all
 }

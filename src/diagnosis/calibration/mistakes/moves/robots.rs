@@ -68,8 +68,8 @@ fn radians(robot: &Robot) -> Reading {
     }
 }
 
-/// Gravity in another unit, or none. Along another axis of {0} it is as large, and no reading of the
-/// file: a clamp that stands aside was taken for it.
+/// Gravity in another unit, or none. Along another axis of {0} it is as large, and no reading of
+/// the file: a clamp that stands aside was taken for it.
 fn gravity(campaign: &Campaign) -> Vec<Reading> {
     let given = campaign.robot.gravity;
     let with = |gravity: Vector3<f64>| Robot { gravity, ..campaign.robot.clone() };

@@ -10,7 +10,9 @@
 //! m = argmin_m  min_ρ |recorded − predicted(ρ; m)|²
 //! ```
 //!
-//! and the search is made about that robot too.
+//! and the search is made about that robot too. Where several loads are found, what it took two to
+//! explain about a robot that was calibrated with neither, one may explain about its own: a robot
+//! beside each of them alone is sought as well, and is the better one at the odds of any finding.
 
 use super::beside::{Loads, calibrated_with, is_load};
 use super::prepared::{FirstLook, Prepared};
@@ -20,7 +22,7 @@ use crate::diagnosis::calibration::effects::registry::pulls;
 use crate::diagnosis::calibration::model::CalibrationModel;
 use crate::diagnosis::calibration::model::law::{Hung, Law};
 use crate::error::Result;
-use crate::inference::{APART, Diagnosis, Effect, Hypothesis, Location, Rival, Sketch, Term, sketch};
+use crate::inference::{APART, Diagnosis, Effect, Hypothesis, Location, NAMED, Rival, Sketch, Term, sketch};
 
 /// Of more rows each calibration takes too long.
 const MOST_ROWS: usize = 2000;
@@ -60,36 +62,61 @@ pub struct BesideMasses<'c> {
     pub is_another: bool,
 }
 
-/// Compares a robot with those beside a mass that the calibration has hidden.
+/// Compares a robot with those beside a mass that the calibration has hidden, and beside each of
+/// several loads alone.
 pub fn beside_hidden_masses<'c>(
     campaign: &'c Campaign,
     prepared: Prepared<'c>,
     look: &FirstLook,
 ) -> Result<BesideMasses<'c>> {
     let first = sketch(&prepared.model, &prepared.evidence);
-    let robots = beside_masses(&prepared)?;
+    let masses = beside_masses(&prepared)?;
+    let alone = beside_one_load(&prepared, &first.hypothesis)?;
+    let robots =
+        masses.into_iter().map(|robot| (robot, false)).chain(alone.into_iter().map(|own| (own, true)));
     let mut found = vec![(prepared, first)];
-    for (beside, about) in robots {
+    for ((beside, about), is_alone) in robots {
         let left = Some(beside.deviations.iter().map(|deviation| -deviation).collect());
         let look = FirstLook { left, ..look.clone() };
-        let mut other = Prepared::about(campaign, found[0].0.model.calibration.clone(), about, &look)?;
-        let sketched = sketch(&other.model, &other.evidence);
+        let calibration = found[0].0.model.calibration.clone();
+        let mut other = Prepared::about(campaign, calibration.clone(), about, &look)?;
+        let mut sketched = sketch(&other.model, &other.evidence);
+        // a load alone is another one than beside others
+        let again = if is_alone {
+            calibrated_with(&other, &Loads::of(&other.model, &sketched.hypothesis.terms))?
+        } else {
+            None
+        };
+        if let Some((_, about)) = again {
+            other = Prepared::about(campaign, calibration, about, &look)?;
+            sketched = sketch(&other.model, &other.evidence);
+        }
         other.evidence.correlated_noise = sketched.correlated_noise;
         found.push((other, sketched));
     }
+    let all: Vec<Vec<_>> = found.iter().map(|(other, sketched)| named(other, sketched)).collect();
     let probability = |k: usize| found[k].1.log_probability;
-    let best = (0..found.len()).max_by(|a, b| probability(*a).total_cmp(&probability(*b))).unwrap_or(0);
-    let (prepared, chosen) = found.swap_remove(best);
-    let own = named(&prepared, &chosen);
-    let near = found.iter().map(|(other, sketched)| {
-        let odds = (chosen.log_probability - sketched.log_probability).exp();
-        named(other, sketched).into_iter().map(move |(effect, location)| (effect, location, odds))
-    });
-    let is_rival = |(effect, location, odds): &(&'static Effect, Location, f64)| {
-        *odds < APART && !own.iter().any(|known| known.0 == *effect && known.1 == *location)
+    let by_probability = |a: &usize, b: &usize| probability(*a).total_cmp(&probability(*b));
+    let best = (0..found.len()).max_by(by_probability).unwrap_or(0);
+    // one load more is named at the odds of any finding
+    let is_enough = |k: &usize| {
+        let is_part = all[*k].len() < all[best].len() && all[*k].iter().all(|own| all[best].contains(own));
+        is_part && !all[*k].is_empty() && probability(best) - probability(*k) < NAMED.ln()
     };
-    let rivals = near.flatten().filter(is_rival);
-    let rivals = rivals.map(|(effect, location, odds)| Rival::without_term(effect, location, odds)).collect();
+    let best = (0..found.len()).filter(is_enough).max_by(by_probability).unwrap_or(best);
+    let chosen = probability(best);
+    let own = &all[best];
+    let mut rivals = Vec::new();
+    for (k, named) in all.iter().enumerate() {
+        let odds = (chosen - probability(k)).exp();
+        // what stands beside all of that is nothing in its place
+        if odds >= APART || (!own.is_empty() && own.iter().all(|known| named.contains(known))) {
+            continue;
+        }
+        let others = named.iter().filter(|known| !own.contains(known)).cloned();
+        rivals.extend(others.map(|(effect, location)| Rival::without_term(effect, location, odds)));
+    }
+    let (prepared, _) = found.swap_remove(best);
     Ok(BesideMasses { prepared, rivals, is_another: best > 0 })
 }
 
@@ -111,6 +138,26 @@ pub fn with_rivals(diagnosis: &mut Diagnosis, rivals: Vec<Rival>) {
         }
     }
     finding.rivals.sort_by(|a, b| a.odds.total_cmp(&b.odds));
+}
+
+/// Robots beside each of several loads of a hypothesis alone: what it takes two to explain about a
+/// robot that was calibrated with neither, one may explain about its own.
+fn beside_one_load<'c>(
+    prepared: &Prepared<'c>,
+    hypothesis: &Hypothesis,
+) -> Result<Vec<(Calibration<'c>, Calibration<'c>)>> {
+    let model = &prepared.model;
+    let all: Vec<&Term> = loads(model, hypothesis).collect();
+    if all.len() < 2 {
+        return Ok(Vec::new());
+    }
+    let mut found = Vec::new();
+    for alone in &all {
+        let is_beside = |term: &&Term| term == alone || !all.contains(term);
+        let terms: Vec<Term> = hypothesis.terms.iter().filter(is_beside).cloned().collect();
+        found.extend(calibrated_with(prepared, &Loads::of(model, &terms))?);
+    }
+    Ok(found)
 }
 
 /// Robots beside a mass that may be all that rod and masses of a hypothesis stand for, as in

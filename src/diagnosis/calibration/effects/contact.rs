@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::super::model::entry::linear;
+use super::super::model::vector::component;
 use super::super::model::{CalibrationModel, Configuration};
 use super::loads::{gives_way, pulled};
 use super::{
@@ -10,9 +11,12 @@ use super::{
     single, size,
 };
 use crate::inference::{Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
+use crate::units::{DEG, GRAM};
 
 /// Error of a contact force, N.
 const CONTACT: f64 = 0.3;
+/// Frames whose verticals differ by less stand on the same edge, rad.
+const SAME_EDGE: f64 = 5.0 * DEG;
 /// Rate of a sensor's spring, N/m.
 const RATE: f64 = 100.0;
 
@@ -85,12 +89,41 @@ pub(super) fn at_clamps(
     entries
 }
 
-fn contact_observed(finding: &Finding, _: &CalibrationModel) -> String {
+fn contact_observed(finding: &Finding, model: &CalibrationModel) -> String {
     let at = match &finding.location {
         Location::AllClamps => "In all clamps".to_owned(),
         clamp => format!("At {clamp}"),
     };
-    format!("{at} the contact force differs by {} from the stated one", size(finding, 1.0).with_unit("N"))
+    let by = size(finding, 1.0).with_unit("N");
+    format!("{at} the contact force differs by {by} from the stated one{}", like_a_mass(finding, model))
+}
+
+/// What of it a mass at the tip would do as well. Where all clamps stand on the same edge, no pose
+/// can tell them apart:
+///
+/// ```text
+/// F·ĝ = m·g,    ĝ gravity's direction in the frame of every device
+/// ```
+fn like_a_mass(finding: &Finding, model: &CalibrationModel) -> String {
+    let (true, [part]) = (finding.location == Location::AllClamps, &finding.parts[..]) else {
+        return String::new();
+    };
+    let setup = &model.calibration.setup;
+    let gravity = setup.base().rotation * setup.robot.gravity;
+    let down = gravity.try_normalize(0.0).unwrap_or_default();
+    let mut verticals =
+        (model.campaign.measurements.groups.iter()).map(|group| group.device.rotation.tr_mul(&down));
+    let Some(first) = verticals.next() else { return String::new() };
+    let along = component(part, &first);
+    let is_alike = first.norm() > 0.5 && verticals.all(|other| other.dot(&first) > SAME_EDGE.cos());
+    let is_seen = along.low > 0.0 || along.high < 0.0;
+    if !is_alike || !is_seen {
+        return String::new();
+    }
+    let way = if along.value < 0.0 { ("up", "less") } else { ("down", "more") };
+    let mass = along.map(|force| force / gravity.norm() / GRAM).size().with_unit("g");
+    let force = along.size().with_unit("N");
+    format!("; {force} of that, {}wards, {mass} {} at the tip would do as well", way.0, way.1)
 }
 
 /// A device whose springs push harder the farther they are pressed.

@@ -2,7 +2,7 @@
 //! interval ± k·√(gᵀ·Σ·g): coverage factor k, gradient g, posterior covariance Σ (GUM: law of
 //! propagation of uncertainty).
 
-use nalgebra::DVector;
+use nalgebra::{DVector, Vector3};
 
 use crate::inference::{FindingPart, Quantity};
 
@@ -45,4 +45,13 @@ pub fn size(part: &FindingPart, unit: f64) -> Quantity {
         low: (size.value - half).max(0.0) / unit,
         high: (size.value + half) / unit,
     }
+}
+
+/// What the first three values of a part are along a unit vector, in their unit.
+pub fn component(part: &FindingPart, along: &Vector3<f64>) -> Quantity {
+    let count = part.term.values.len().min(3);
+    let gradient = DVector::from_column_slice(&along.as_slice()[..count]);
+    let value = gradient.dot(&DVector::from_column_slice(&part.term.values[..count]));
+    let half = Length { value, gradient }.half_interval(part);
+    Quantity { value, low: value - half, high: value + half }
 }

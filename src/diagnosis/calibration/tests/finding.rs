@@ -220,6 +220,29 @@ fn a_rod_of_another_density() {
     assert_eq!(finding.rivals[0].effect.name, "rod_mass");
 }
 
+/// A contact force with a number of the wrong sign bends the rod by half a millimetre. Exchanged
+/// pipes, or a turned wrist with a rod turned back, would have their tip elsewhere; a mass at the
+/// flange was needed only beside a heavy rod.
+#[test]
+fn a_force_of_a_wrong_sign_is_neither_another_rod_nor_a_mass() {
+    let heavier = ROD.replace("mass_g = 60", "mass_g = 460");
+    let cases =
+        [(ROD, 20, 8, [-1.0, 1.0, 1.0]), (&heavier, 25, 5, [1.0, -1.0, 1.0]), (ROD, 12, 1, [-1.0, 1.0, 1.0])];
+    for (actual, poses_per_clamp, seed, signs) in cases {
+        let mut campaign = with_rods(actual, ROD, Plan { poses_per_clamp, seed, ..Plan::default() });
+        campaign.contact_force =
+            campaign.contact_force.map(|force| force.component_mul(&Vector3::from(signs)));
+        let mended = mend(&campaign, Mode::Fea, &Neighbours::default(), &Options::default()).unwrap();
+        let found = mended.diagnose().unwrap().diagnosis.findings;
+        let name = |finding: &Finding| format!("{}: {}", finding.effect, finding.location);
+        let names: Vec<String> = found.iter().map(name).collect();
+        assert_eq!(names, ["contact_force_variation: all clamps"], "seed {seed}");
+        // the clamps stand on one edge
+        let observed = &found[0].description.observed;
+        assert_eq!(observed.contains("g more at the tip would do as well"), actual != ROD, "{observed}");
+    }
+}
+
 #[test]
 fn what_the_calibration_absorbs_is_said() {
     let campaign = clamps(12);

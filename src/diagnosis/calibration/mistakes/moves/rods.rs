@@ -7,10 +7,13 @@ use crate::calibration::campaign::Campaign;
 use crate::inference::Key;
 use crate::rod::Rod;
 
-/// The rod with the one pipe as long as the other; `None` where that is no rod, or the same one.
+/// The rod with the one pipe as long as the other; `None` where that is no rod, the same one, or one
+/// whose tip is farther from the one that the campaign gives.
 pub fn exchanged(campaign: &Campaign) -> Option<Rod> {
     let rod = campaign.rod.as_ref().filter(|rod| rod.l1 != rod.l2)?;
-    Rod { l1: rod.l2, l2: rod.l1, ..rod.clone() }.checked().ok()
+    let other = Rod { l1: rod.l2, l2: rod.l1, ..rod.clone() }.checked().ok()?;
+    let off = |rod: &Rod| (rod.tip() - campaign.tool).norm();
+    (!campaign.tool_is_given || off(&other) < off(rod)).then_some(other)
 }
 
 impl List<'_> {

@@ -17,6 +17,11 @@ impl MistakeSearch<'_> {
         {
             return false;
         }
+        // what was measured by hand and agrees is no accident: where a fit is good with it, a change
+        // that contradicts it is fitted to something else
+        if !self.has_failed(before) && before.guess - after.guess > ODDS {
+            return false;
+        }
         // a first guess that agrees now where it did not, with a fit that is good both times
         let agrees = !self.has_failed(before) && after.guess - before.guess > ODDS;
         // no physics makes a force so much larger or smaller

@@ -7,8 +7,8 @@ use crate::calibration::campaign::Campaign;
 use crate::inference::Key;
 use crate::rod::Rod;
 
-/// The rod with the one pipe as long as the other; `None` where that is no rod, the same one, or one
-/// whose tip is farther from the one that the campaign gives.
+/// The rod with the one pipe as long as the other; `None` where that is no rod, the same one, or
+/// one whose tip is farther from the one that the campaign gives.
 pub fn exchanged(campaign: &Campaign) -> Option<Rod> {
     let rod = campaign.rod.as_ref().filter(|rod| rod.l1 != rod.l2)?;
     let other = Rod { l1: rod.l2, l2: rod.l1, ..rod.clone() }.checked().ok()?;

@@ -17,8 +17,8 @@ impl MistakeSearch<'_> {
         {
             return false;
         }
-        // what was measured by hand and agrees is no accident: where a fit is good with it, a change
-        // that contradicts it is fitted to something else
+        // what was measured by hand and agrees is no accident: where a fit is good with it, a
+        // change that contradicts it is fitted to something else
         if !self.has_failed(before) && before.guess - after.guess > ODDS {
             return false;
         }

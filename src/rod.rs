@@ -8,7 +8,7 @@ pub(crate) mod constants;
 pub(crate) mod file;
 pub mod law;
 mod nominal;
-mod sleeve;
+pub(crate) mod sleeve;
 mod uncertainty;
 mod warnings;
 mod write;

@@ -3,8 +3,7 @@
 use super::{Answer, LongList, provenance};
 use crate::calibration::Campaign;
 use crate::design::{
-    Budget, DesignSpace, Found, MOST_RODS, PoseStep, PoseStudy, Searched, Source, Study, Wanted, Where,
-    for_robot,
+    Budget, DesignSpace, Found, PoseStep, PoseStudy, Searched, Source, Study, Wanted, Where, for_robot,
 };
 use crate::diagnosis::rig::planned::{Bench, effect_named, effect_names, plan, plan_ratio};
 use crate::error::{Error, Result};
@@ -32,16 +31,12 @@ impl DesignRod<'_> {
     /// Which rods of `space` are looked at; `samples` of them, or all.
     ///
     /// # Errors
-    /// [`Error::Argument`] for all of more rods than a search takes.
+    /// [`DesignSpace::too_much`] for all of more rods than a search takes.
     pub fn searched(&self, space: &DesignSpace, samples: Option<u64>) -> Result<Searched> {
-        match (samples, space.is_too_much()) {
+        match (samples, space.too_much()) {
             (Some(samples), _) => Ok(Searched::Samples(samples, self.seed)),
             (None, None) => Ok(Searched::All),
-            (None, Some(much)) => Err(Error::Argument {
-                name: "ranges",
-                found: much,
-                expected: format!("at most {MOST_RODS} rods: take larger steps, or --samples N"),
-            }),
+            (None, Some(much)) => Err(much),
         }
     }
 }

@@ -15,6 +15,9 @@ pub const BUILT_IN: &str = "builtin";
 /// The built-in catalogue as a table.
 pub(super) const BUILT_IN_TEXT: &str = include_str!("built_in.csv");
 
+/// The thinnest wall of a tube that bears itself, mm.
+const THINNEST: f64 = 0.01;
+
 /// A tube that can be bought.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -122,6 +125,10 @@ fn tube(row: &Row<'_>, materials: &BTreeMap<String, Material>) -> Result<Tube> {
         let expected = format!("0 for a solid round, or less than the outer diameter, {outer}");
         return Err(row.error("inner_diameter_mm", expected, None));
     }
+    if inner > 0.0 && outer - inner < 2.0 * THINNEST {
+        let expected = format!("{:.2} at most: a wall of {THINNEST} mm", outer - 2.0 * THINNEST);
+        return Err(row.error("inner_diameter_mm", expected, None));
+    }
     let price_per_m = row.number("price_per_m")?;
     if price_per_m.is_some_and(|price| price < 0.0) {
         return Err(row.error("price_per_m", "a price of 0 or more".into(), None));
@@ -162,6 +169,7 @@ mod tests {
         for (rows, expected) in [
             ("a,stel,16,14,\n", "t.csv:2:3: material is \"stel\""),
             ("a,steel,16,16,\n", "t.csv:2:12: inner_diameter_mm is \"16\""),
+            ("a,steel,16,15.9999,\n", "t.csv:2:12: inner_diameter_mm is \"15.9999\", expected 15.98 at most"),
             ("a,steel,0,0,\n", "t.csv:2:9: outer_diameter_mm is \"0\""),
             ("a,steel,16,14,-1\n", "t.csv:2:15: price_per_m is \"-1\""),
             ("a,steel,16,14,1\na,steel,20,18,1\n", "t.csv:3:1: name is \"a\""),

@@ -70,6 +70,10 @@ pub enum Impossible {
     BendTighterThanTube,
     /// A mass or a joint would sit beyond the tip.
     StationBeyondTip,
+    /// A sleeve would lie over the corner or bend, or beyond the tip.
+    SleeveNotOnOnePipe,
+    /// The wall of a sleeve would be where that of a tube is.
+    SleeveInTheWay,
     /// The corner takes more of a pipe than there is: one pipe would end within the other, or
     /// within the flange.
     CornerDoesNotFit,
@@ -81,11 +85,13 @@ impl Impossible {
         Impossible::BendDoesNotFit,
         Impossible::BendTighterThanTube,
         Impossible::StationBeyondTip,
+        Impossible::SleeveNotOnOnePipe,
+        Impossible::SleeveInTheWay,
         Impossible::CornerDoesNotFit,
     ];
 
     /// Number of them.
-    pub const COUNT: usize = 4;
+    pub const COUNT: usize = 6;
 
     /// Its name in the JSON.
     pub fn key(self) -> &'static str {
@@ -93,6 +99,8 @@ impl Impossible {
             Impossible::BendDoesNotFit => "bend_does_not_fit",
             Impossible::BendTighterThanTube => "bend_tighter_than_tube",
             Impossible::StationBeyondTip => "station_beyond_tip",
+            Impossible::SleeveNotOnOnePipe => "sleeve_not_on_one_pipe",
+            Impossible::SleeveInTheWay => "sleeve_in_the_way",
             Impossible::CornerDoesNotFit => "corner_does_not_fit",
         }
     }
@@ -103,6 +111,8 @@ impl Impossible {
             Impossible::BendDoesNotFit => "the bend does not fit between the pipes",
             Impossible::BendTighterThanTube => "the bend is tighter than the tube is thick",
             Impossible::StationBeyondTip => "a mass or a joint would sit beyond the tip",
+            Impossible::SleeveNotOnOnePipe => "a sleeve would not lie on one straight pipe",
+            Impossible::SleeveInTheWay => "a sleeve fits neither over nor in the tube",
             Impossible::CornerDoesNotFit => {
                 "a pipe is too short for the corner: one would end within the other"
             }

@@ -96,7 +96,8 @@ impl<'s> Search<'s> {
     /// Before any rod.
     ///
     /// # Errors
-    /// [`Error::Argument`] for more than [`MOST_RODS`](super::MOST_RODS) rods, or no samples.
+    /// [`DesignSpace::too_much`] for all of too many rods; [`Error::Argument`] for more than
+    /// [`MOST_RODS`](super::MOST_RODS) samples, or none.
     pub fn new(space: &'s DesignSpace, searched: Searched) -> Result<Search<'s>> {
         let all = space.combinations();
         let count = match searched {
@@ -111,11 +112,13 @@ impl<'s> Search<'s> {
             });
         }
         if count > super::MOST_RODS {
-            return Err(Error::Argument {
-                name: "ranges",
-                found: space.is_too_much().unwrap_or_default(),
-                expected: format!("at most {} rods: take larger steps, or a sample", super::MOST_RODS),
-            });
+            let too_many_samples = || Error::Argument {
+                name: "samples",
+                found: count.to_string(),
+                expected: format!("at most {} rods", super::MOST_RODS),
+            };
+            let much = space.too_much().filter(|_| searched == Searched::All);
+            return Err(much.unwrap_or_else(too_many_samples));
         }
         Ok(Search { space, searched, count, part: 0..count, done: 0, total: Sum::new(space) })
     }
@@ -271,8 +274,7 @@ impl<'s> Task<'s> {
         let of_tubes = |tubes: [usize; 2]| {
             let [first, second] = tubes.map(|tube| space.tubes[tube].pipe.clone());
             let mut rod = Rod::new("", choice.l1, choice.l2, first).with_pipe2(second);
-            rod.masses.clone_from(&space.masses);
-            rod.joints.clone_from(&space.joints);
+            space.furnish(&mut rod);
             rod
         };
         let known = self.rod.take().filter(|(_, tubes)| *tubes == choice.tubes);

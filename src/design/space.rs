@@ -3,14 +3,17 @@
 mod file;
 
 use super::catalogue::Tube;
-use super::figure::Goal;
+use super::figure::{Figure, Goal};
 use super::limits::{Impossible, Limit};
-use crate::rod::{BendFlexibility, Joint, LumpedMass, Rod, Warning};
+use super::values::{USUAL_SPEED, duration};
+use crate::error::{Error, Place};
+use crate::rod::sleeve::Misfit;
+use crate::rod::{BendFlexibility, Joint, LumpedMass, Rod, Sleeve, Warning};
 
 /// Most combinations of one search.
 pub const MOST_RODS: u64 = 2_000_000_000;
-/// Combinations in a second, for an estimate of the time.
-const USUAL_SPEED: f64 = 1e6;
+/// Times as long a rod takes whose frequency is asked for.
+const WITH_FREQUENCY: f64 = 30.0;
 
 /// What may vary, what must hold, what counts.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +23,8 @@ pub struct DesignSpace {
     pub file: String,
     /// Texts of the file and of its catalogue.
     pub(super) content: String,
+    /// Where the key with the most values stands.
+    pub(super) longest: Place,
     /// L1, L2 and bend radius, m; γ, rad; mass at the tip, kg.
     pub l1: Vec<f64>,
     #[allow(missing_docs)]
@@ -43,6 +48,8 @@ pub struct DesignSpace {
     pub masses: Vec<LumpedMass>,
     #[allow(missing_docs)]
     pub joints: Vec<Joint>,
+    #[allow(missing_docs)]
+    pub sleeves: Vec<Sleeve>,
     /// What must hold.
     pub limits: Vec<Limit>,
     /// What counts.
@@ -72,16 +79,34 @@ impl DesignSpace {
         u64::try_from(all).unwrap_or(u64::MAX)
     }
 
-    /// How many rods that would be and how long they would take, where they are more than a search
-    /// takes.
-    pub fn is_too_much(&self) -> Option<String> {
+    /// The error of more rods than a search takes: how many, how long they would take, and where
+    /// the longest range stands.
+    pub fn too_much(&self) -> Option<Error> {
         let all = self.combinations();
-        (all > MOST_RODS).then(|| {
-            let hours = all as f64 / USUAL_SPEED / 3600.0;
-            format!(
-                "{all} rods, about {} of computing",
-                if hours > 48.0 { format!("{:.0} days", hours / 24.0) } else { format!("{hours:.0} hours") }
-            )
+        if all <= MOST_RODS {
+            return None;
+        }
+        let is_frequency_asked = self.goals.iter().any(|goal| goal.figure == Figure::FirstFrequency);
+        let each = if is_frequency_asked { WITH_FREQUENCY } else { 1.0 } / USUAL_SPEED;
+        let counts = [
+            ("l1_mm", self.l1.len()),
+            ("l2_mm", self.l2.len()),
+            ("gamma_deg", self.gamma.len()),
+            ("bend_radius_mm", self.bend_radius.len()),
+            ("mass_g", self.tip_mass.len()),
+            ("tubes", if self.is_one_tube { self.tubes.len() } else { self.tubes.len().pow(2) }),
+        ];
+        let counts = counts.iter().filter(|(_, count)| *count > 1);
+        let counts: Vec<String> = counts.map(|(key, count)| format!("{count} {key}")).collect();
+        Some(Error::Input {
+            at: self.longest.clone(),
+            found: format!(
+                "{} are {all} rods, {} of computing",
+                counts.join(" × "),
+                duration(all as f64 * each)
+            ),
+            expected: format!("at most {MOST_RODS}"),
+            hint: Some("take larger steps, or --samples N".into()),
         })
     }
 
@@ -111,9 +136,8 @@ impl DesignSpace {
         let choice = self.choice(index);
         let [first, second] = choice.tubes.map(|tube| self.tubes[tube].pipe.clone());
         let mut rod = Rod::new(format!("design {index}"), choice.l1, choice.l2, first).with_pipe2(second);
+        self.furnish(&mut rod);
         self.shape(&choice, &mut rod);
-        rod.masses.clone_from(&self.masses);
-        rod.joints.clone_from(&self.joints);
         self.possible(&rod)?;
         Ok(rod)
     }
@@ -125,7 +149,14 @@ impl DesignSpace {
         if first == second { vec![name(first)] } else { vec![name(first), name(second)] }
     }
 
-    /// Gives `rod` the shape of a choice; its tubes stay.
+    /// Puts on `rod` what sits on every one.
+    pub(super) fn furnish(&self, rod: &mut Rod) {
+        rod.masses.clone_from(&self.masses);
+        rod.joints.clone_from(&self.joints);
+        rod.sleeves.clone_from(&self.sleeves);
+    }
+
+    /// Gives `rod` the shape of a choice; its tubes, and what sits on it, stay.
     pub(super) fn shape(&self, choice: &Choice, rod: &mut Rod) {
         rod.l1 = choice.l1;
         rod.l2 = choice.l2;
@@ -150,7 +181,11 @@ impl DesignSpace {
         let length = if self.masses.len() + self.joints.len() > 0 { rod.length() } else { 0.0 };
         match stations.any(|station| station > length) {
             true => Err(Impossible::StationBeyondTip),
-            false => Ok(()),
+            false => match rod.misfit() {
+                None => Ok(()),
+                Some(Misfit::Stretch) => Err(Impossible::SleeveNotOnOnePipe),
+                Some(Misfit::Wall) => Err(Impossible::SleeveInTheWay),
+            },
         }
     }
 

@@ -13,6 +13,17 @@ pub const MOST_VALUES: usize = 100_000;
 /// Share of a step by which rounding may miss the end of a range.
 const SLACK: f64 = 1e-9;
 
+/// Combinations in a second, for an estimate of the time.
+pub(super) const USUAL_SPEED: f64 = 1e6;
+
+/// A time of computing (s) in words, roughly.
+pub(super) fn duration(seconds: f64) -> String {
+    let units = [(86_400.0 * 365.0, "years"), (86_400.0, "days"), (3600.0, "hours"), (60.0, "minutes")];
+    let of_unit = units.into_iter().find(|(unit, _)| seconds > 2.0 * unit);
+    let (unit, name) = of_unit.unwrap_or((1.0, "seconds"));
+    format!("about {:.0} {name}", (seconds / unit).max(1.0))
+}
+
 /// Values of a key as the file has them.
 #[derive(Debug, Deserialize)]
 #[serde(untagged, expecting = "expected a number, a list of numbers, or a range {from, to, step}")]
@@ -54,14 +65,14 @@ impl Bounds {
     pub const LENGTH: Bounds = Bounds {
         least: f64::MIN_POSITIVE,
         most: 1e6,
-        expected: "lengths > 0 in mm",
+        expected: "lengths > 0 in mm, 1000000 at most",
         unit: "mm",
         usual: (1.0, 20_000.0),
     };
     pub const RADIUS: Bounds = Bounds {
         least: 0.0,
         most: 1e6,
-        expected: "radii of 0 or more in mm",
+        expected: "radii of 0 or more in mm, 1000000 at most",
         unit: "mm",
         usual: (1.0, 20_000.0),
     };
@@ -74,8 +85,8 @@ impl Bounds {
     };
     pub const MASS: Bounds = Bounds {
         least: 0.0,
-        most: 1e9,
-        expected: "masses of 0 or more in g",
+        most: 1e6,
+        expected: "masses of 0 or more in g, 1000000 at most",
         unit: "g",
         usual: (0.1, 20_000.0),
     };
@@ -108,8 +119,14 @@ pub(super) fn values(check: &mut Check, key: &str, raw: &Spanned<Raw>, bounds: B
                     true => (steps as u64 + 1).to_string(),
                     false => significant(steps, 3),
                 };
+                let seconds = steps / USUAL_SPEED;
+                let time = if seconds > 60.0 {
+                    format!(", {} of computing or more", duration(seconds))
+                } else {
+                    String::new()
+                };
                 let expected =
-                    format!("at most {MOST_VALUES} values where these are {count}: take larger steps");
+                    format!("at most {MOST_VALUES} values where these are {count}{time}: take larger steps");
                 return Err(toml.is(key, raw, &expected));
             }
             (0..=steps as usize).map(|k| from + k as f64 * step).collect()
@@ -176,7 +193,8 @@ mod tests {
     fn what_is_no_set_of_values_is_refused_where_it_stands() {
         for (text, expected) in [
             ("[]", "expected at least one value"),
-            ("0", "expected lengths > 0 in mm"),
+            ("0", "expected lengths > 0 in mm, 1000000 at most"),
+            ("1e9", "expected lengths > 0 in mm, 1000000 at most"),
             ("[150, -1]", "expected lengths > 0 in mm"),
             ("{ from = 2, to = 1, step = 1 }", "expected a range whose `to` is not below its `from`"),
             ("{ from = 1, to = 2, step = 0 }", "expected a range whose step is > 0"),

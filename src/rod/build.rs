@@ -160,8 +160,7 @@ impl Rod {
             if let Some(expected) = self.no_stretch(*from, *to) {
                 return refuse(format!("\"{name}\" from {:.3} to {:.3} mm", from / MM, to / MM), expected);
             }
-            let before = Rod { sleeves: self.sleeves[..k].to_vec(), ..self.clone() };
-            if let Some(other) = before.in_the_way(&pipe.section, *from, *to) {
+            if let Some(other) = self.in_the_way(&self.sleeves[..k], &pipe.section, *from, *to) {
                 return refuse(
                     format!("\"{name}\" in the wall of {other}"),
                     "a tube over it or in it".into(),

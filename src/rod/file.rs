@@ -20,8 +20,8 @@ pub use self::geometry::RawFlexibility;
 use self::geometry::RawGeometry;
 use self::laws::RawLaw;
 pub use self::materials::MaterialTable;
-pub use self::parts::{RawJoint, RawMass};
-use self::parts::{RawPipe, RawSleeve, RawTip};
+pub use self::parts::{RawJoint, RawMass, RawSleeve};
+use self::parts::{RawPipe, RawTip};
 use self::uncertainty::RawUncertainty;
 use super::{Rod, Warning};
 use crate::error::Result;
@@ -131,7 +131,7 @@ impl Check<'_> {
         let mut materials = BTreeMap::new();
         for (name, material) in &raw.material.0 {
             let material = self.material(name, material, &raw.standard_uncertainty)?;
-            materials.insert(name.as_str(), material);
+            materials.insert(name.clone(), material);
         }
         let pipe1 = self.pipe("pipe1", &raw.pipe1, &materials)?;
         let pipe2 = self.pipe("pipe2", &raw.pipe2, &materials)?;

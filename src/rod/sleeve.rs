@@ -75,45 +75,93 @@ impl<T: Number> Rod<T> {
     }
 }
 
+/// What of a sleeve does not fit its rod.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Misfit {
+    /// It does not lie on one straight pipe.
+    Stretch,
+    /// Its wall would be where that of the pipe, or of a sleeve before it, is.
+    Wall,
+}
+
 impl Rod {
+    /// What of the first sleeve that does not fit is amiss.
+    pub(crate) fn misfit(&self) -> Option<Misfit> {
+        let misfit = |(k, sleeve): (usize, &Sleeve)| {
+            let Sleeve { from, to, pipe, .. } = sleeve;
+            if !self.holds(*from, *to) {
+                return Some(Misfit::Stretch);
+            }
+            let walls = self.walls(&self.sleeves[..k], *from, *to);
+            walls
+                .map(|(_, section)| section)
+                .any(|other| is_through(&pipe.section, other))
+                .then_some(Misfit::Wall)
+        };
+        self.sleeves.iter().enumerate().find_map(misfit)
+    }
+
+    fn holds(&self, from: f64, to: f64) -> bool {
+        let within = |a: f64, b: f64| from >= a - ROUNDED && to <= b + ROUNDED;
+        from < to && (within(0.0, self.bend_start()) || within(self.bend_end(), self.length()))
+    }
+
     /// Why a stretch from station `from` to `to` (m) cannot carry a sleeve: what would be right.
     pub(super) fn no_stretch(&self, from: f64, to: f64) -> Option<String> {
-        let (start, end, length) = (self.bend_start(), self.bend_end(), self.length());
-        let holds = |a: f64, b: f64| from >= a - ROUNDED && to <= b + ROUNDED;
-        if from < to && (holds(0.0, start) || holds(end, length)) {
+        if self.holds(from, to) {
             return None;
         }
         // as a drawing has it: 150, not 150.000
         let mm = |station: f64| (station / MM * 1e3).round() / 1e3;
         Some(format!(
             "a stretch of one straight pipe, 0 to {} mm or {} to {} mm, its end beyond its beginning",
-            mm(start),
-            mm(end),
-            mm(length)
+            mm(self.bend_start()),
+            mm(self.bend_end()),
+            mm(self.length())
         ))
     }
 
-    /// A pipe or sleeve whose wall would be where that of `section` is, along a stretch from
-    /// `from` to `to` (m), by its name. Of rounds; other sections are not compared.
-    pub(super) fn in_the_way(&self, section: &Section, from: f64, to: f64) -> Option<String> {
-        let is_through = |other: &Section| match (section.as_round(), other.as_round()) {
-            (Some(a), Some(b)) => {
-                a.inner_diameter + PRESS_FIT < b.outer_diameter
-                    && b.inner_diameter + PRESS_FIT < a.outer_diameter
-            }
-            _ => false,
-        };
-        let middle = 0.5 * (from + to);
-        let (name, pipe) = match middle < self.bend_start() {
-            true => ("pipe1", &self.pipe1),
-            false => ("pipe2", &self.pipe2),
-        };
-        let overlaps = |sleeve: &&Sleeve| sleeve.from < to - ROUNDED && sleeve.to > from + ROUNDED;
-        let sleeves = self.sleeves.iter().filter(overlaps);
-        let sleeves = sleeves.map(|sleeve| (format!("sleeve \"{}\"", sleeve.name), &sleeve.pipe.section));
-        std::iter::once((name.to_owned(), &pipe.section))
-            .chain(sleeves)
-            .find(|(_, other)| is_through(other))
-            .map(|(name, _)| name)
+    /// A pipe or one of the sleeves `others` whose wall would be where that of `section` is, along a
+    /// stretch from `from` to `to` (m), by its name. Of rounds; other sections are not compared.
+    pub(super) fn in_the_way(
+        &self,
+        others: &[Sleeve],
+        section: &Section,
+        from: f64,
+        to: f64,
+    ) -> Option<String> {
+        let (sleeve, _) = self.walls(others, from, to).find(|(_, other)| is_through(section, other))?;
+        Some(match sleeve {
+            Some(sleeve) => format!("sleeve \"{}\"", sleeve.name),
+            None if is_on_first(self, from, to) => "pipe1".to_owned(),
+            None => "pipe2".to_owned(),
+        })
+    }
+
+    /// Sections along a stretch: the pipe's, then those of the sleeves `others` that are there.
+    fn walls<'r>(
+        &'r self,
+        others: &'r [Sleeve],
+        from: f64,
+        to: f64,
+    ) -> impl Iterator<Item = (Option<&'r Sleeve>, &'r Section)> {
+        let pipe = if is_on_first(self, from, to) { &self.pipe1 } else { &self.pipe2 };
+        let overlaps = move |sleeve: &&Sleeve| sleeve.from < to - ROUNDED && sleeve.to > from + ROUNDED;
+        let sleeves = others.iter().filter(overlaps).map(|sleeve| (Some(sleeve), &sleeve.pipe.section));
+        std::iter::once((None, &pipe.section)).chain(sleeves)
+    }
+}
+
+fn is_on_first(rod: &Rod, from: f64, to: f64) -> bool {
+    0.5 * (from + to) < rod.bend_start()
+}
+
+/// True where two tubes would have to go through one another.
+fn is_through(one: &Section, other: &Section) -> bool {
+    match (one.as_round(), other.as_round()) {
+        (Some(a), Some(b)) => {
+            a.inner_diameter + PRESS_FIT < b.outer_diameter && b.inner_diameter + PRESS_FIT < a.outer_diameter
+        }
+        _ => false,
     }
 }

@@ -131,6 +131,15 @@ fn what_cannot_be_planned_is_refused_with_its_reason_and_nothing_is_written() {
         "design poses campaigns/tx90-5/far.toml --count 20",
         "clamp 5 cannot be reached: the ball comes no nearer than ",
     );
+    // an obstacle of every kind says by how much
+    refused(
+        &format!("design poses {TX90} --count 20 --table-mm 900 --generate 20"),
+        "the arm is near or below the table (by ",
+    );
+    refused(
+        &format!("design poses {TX90} --count 20 --clear-mm 700 --generate 20"),
+        "arm or rod is within the block about a clamp (700 mm; by ",
+    );
     sandbox.write("p.csv", "pose,q1_deg\n1,3\n");
     refused(&format!("design poses {TX90} --count 20 --candidates p.csv"), "p.csv:1");
     let joints = "q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg";

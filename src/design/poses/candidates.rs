@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::limits::{Obstacle, Surroundings};
+use super::limits::{Broken, Obstacle, Surroundings};
 use crate::calibration::NEAR;
 use crate::calibration::campaign::GroupName;
 use crate::delimited::Table;
@@ -47,21 +47,30 @@ const PROBES: usize = 24;
 struct Tally {
     tried: usize,
     refused: [usize; 5],
-    /// The shortest way that was left to the place, m.
-    nearest: f64,
-    /// The smallest angle of the rod where it stood outside the cone alone, rad.
-    angle: f64,
+    /// For each obstacle that which was broken least, in the order of [`Obstacle::ALL`].
+    least: [Option<Broken>; 5],
 }
 
 impl Tally {
-    const NOTHING: Tally = Tally { tried: 0, refused: [0; 5], nearest: f64::INFINITY, angle: f64::INFINITY };
+    const NOTHING: Tally = Tally { tried: 0, refused: [0; 5], least: [None; 5] };
 
     fn and(mut self, other: &Tally) -> Tally {
         self.tried += other.tried;
         self.refused.iter_mut().zip(other.refused).for_each(|(a, b)| *a += b);
-        self.nearest = self.nearest.min(other.nearest);
-        self.angle = self.angle.min(other.angle);
+        other.least.iter().flatten().for_each(|broken| self.keep_least(*broken));
         self
+    }
+
+    fn refuse(&mut self, broken: Broken) {
+        self.refused[broken.obstacle as usize] += 1;
+        self.keep_least(broken);
+    }
+
+    fn keep_least(&mut self, broken: Broken) {
+        let known = &mut self.least[broken.obstacle as usize];
+        if known.is_none_or(|known| broken.by < known.by) {
+            *known = Some(broken);
+        }
     }
 }
 
@@ -173,15 +182,9 @@ fn posture(
             }
         };
         tally.tried += 1;
-        tally.nearest = tally.nearest.min(left);
         match around.obstacle(&kinematics, &q, place, left, None) {
             None => return (Some(q), tally),
-            Some(obstacle) => {
-                tally.refused[obstacle as usize] += 1;
-                if obstacle == Obstacle::Cone {
-                    tally.angle = tally.angle.min(around.angle(&kinematics, place));
-                }
-            }
+            Some(broken) => tally.refuse(broken),
         }
     }
     (None, tally)
@@ -194,23 +197,31 @@ fn why_not(around: &Surroundings, place: usize, tally: &Tally) -> String {
         name => name.to_string(),
     };
     let reached = tally.tried - tally.refused[Obstacle::Far as usize];
-    if reached == 0 {
-        let gap = significant(tally.nearest / MM, 3);
+    let in_unit = |value: f64, unit: f64| significant(value / unit, 3);
+    if let (0, Some(gap)) = (reached, tally.least[Obstacle::Far as usize]) {
+        let gap = in_unit(gap.by, MM);
         return format!("{name} cannot be reached: the ball comes no nearer than {gap} mm");
     }
-    let broken = Obstacle::ALL.into_iter().skip(1).filter(|obstacle| tally.refused[*obstacle as usize] > 0);
-    let broken = broken.map(|obstacle| {
+    let joints = &around.setup.robot.joints;
+    let broken = tally.least.iter().flatten().filter(|broken| broken.obstacle != Obstacle::Far);
+    let broken = broken.map(|&Broken { obstacle, by, joint }| {
         let count = tally.refused[obstacle as usize];
-        let by = match obstacle {
+        let least = match obstacle {
             Obstacle::Cone => format!(
                 " of {}° (nearest: {}°)",
-                significant(around.limits.cone / DEG, 3),
-                significant(tally.angle / DEG, 3)
+                in_unit(around.limits.cone, DEG),
+                in_unit(around.limits.cone + by, DEG)
             ),
-            Obstacle::Block => format!(" ({} mm)", significant(around.limits.clear / MM, 3)),
-            _ => String::new(),
+            Obstacle::Block => {
+                format!(" ({} mm; by {} mm at least)", in_unit(around.limits.clear, MM), in_unit(by, MM))
+            }
+            Obstacle::JointLimit => {
+                let (column, unit) = joints[joint].column(joint + 1);
+                format!(" ({column} by {} at least)", in_unit(by, unit))
+            }
+            Obstacle::Table | Obstacle::Far => format!(" (by {} mm at least)", in_unit(by, MM)),
         };
-        format!("in {count} {}{by}", obstacle.description())
+        format!("in {count} {}{least}", obstacle.description())
     });
     let broken: Vec<String> = broken.collect();
     format!("{name} is reached in {reached} of {} postures, but {}", tally.tried, broken.join(", "))
@@ -247,7 +258,7 @@ fn from_table(around: &Surroundings, file: &str, text: &str) -> Result<Candidate
         }
         match around.obstacle(&kinematics, &q, place, left(place), Some(NEAR)) {
             None => of_place[place].push(q),
-            Some(obstacle) => refused[place][obstacle as usize] += 1,
+            Some(broken) => refused[place][broken.obstacle as usize] += 1,
         }
     }
     let poses: Vec<(usize, Vec<f64>)> = of_place

@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 
 use crate::calibration::Campaign;
 use crate::calibration::campaign::Group;
-use crate::robot::postures::{has_arrived, keeps_limits};
-use crate::robot::{Kinematics, Setup};
+use crate::robot::postures::has_arrived;
+use crate::robot::{Kinematics, Robot, Setup};
 use crate::units::{DEG, MM};
 
 /// How far the arm stays above a table, m.
@@ -91,6 +91,16 @@ impl Obstacle {
     }
 }
 
+/// What a pose breaks first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Broken {
+    pub obstacle: Obstacle,
+    /// By how much: m, rad of the cone, rad or m of a joint.
+    pub by: f64,
+    /// The joint that is farthest beyond its limits.
+    pub joint: usize,
+}
+
 /// The places of a campaign and what is around them.
 #[derive(Debug)]
 pub(super) struct Surroundings<'a> {
@@ -148,7 +158,7 @@ impl<'a> Surroundings<'a> {
         if along.norm() > 0.0 { along.angle(&self.axes[place]) } else { 0.0 }
     }
 
-    /// What a configuration with so much of its way left breaks first.
+    /// What a configuration with so much of its way left breaks first, and by how much.
     pub fn obstacle(
         &self,
         kinematics: &Kinematics,
@@ -156,22 +166,28 @@ impl<'a> Surroundings<'a> {
         place: usize,
         left: f64,
         near: Option<f64>,
-    ) -> Option<Obstacle> {
+    ) -> Option<Broken> {
+        let broken = |obstacle, by| Some(Broken { obstacle, by, joint: 0 });
         let arrives = near.map_or_else(|| has_arrived(left), |near| left <= near);
         if self.are_fixed && !arrives {
-            return Some(Obstacle::Far);
+            return broken(Obstacle::Far, left);
         }
-        if !keeps_limits(self.setup.robot, q) {
-            return Some(Obstacle::JointLimit);
+        if let Some((joint, by)) = beyond_limits(self.setup.robot, q) {
+            return Some(Broken { obstacle: Obstacle::JointLimit, by, joint });
         }
-        if self.are_fixed && self.angle(kinematics, place) > self.limits.cone {
-            return Some(Obstacle::Cone);
+        if self.are_fixed {
+            let beyond = self.angle(kinematics, place) - self.limits.cone;
+            if beyond > 0.0 {
+                return broken(Obstacle::Cone, beyond);
+            }
         }
         let path = self.path(kinematics);
-        if self.is_below_table(&path) {
-            return Some(Obstacle::Table);
+        let below = self.below_table(&path);
+        if below > 0.0 {
+            return broken(Obstacle::Table, below);
         }
-        (self.are_fixed && self.is_in_block(&path, place)).then_some(Obstacle::Block)
+        let within = if self.are_fixed { self.within_block(&path, place) } else { 0.0 };
+        if within > 0.0 { broken(Obstacle::Block, within) } else { None }
     }
 
     /// Base to ball: joint by joint, then along the rod; places that coincide are one.
@@ -182,23 +198,37 @@ impl<'a> Surroundings<'a> {
         path
     }
 
-    /// The first joint stands on the table, and what is at the ball is where the ball has to be.
-    fn is_below_table(&self, path: &[Vector3<f64>]) -> bool {
-        let (Some(table), Some(ball)) = (self.table, path.last()) else { return false };
+    /// How far the arm is too low, m; 0 where it is not. The first joint stands on the table, and
+    /// what is at the ball is where the ball has to be.
+    fn below_table(&self, path: &[Vector3<f64>]) -> f64 {
+        let (Some(table), Some(ball)) = (self.table, path.last()) else { return 0.0 };
         let arm = path.iter().skip(1).filter(|point| (*point - ball).norm() > HAND);
-        arm.into_iter().any(|point| point.z < table + ABOVE)
+        arm.map(|point| table + ABOVE - point.z).fold(0.0, f64::max)
     }
 
-    /// Places nearer than two radii share a block: what enters one enters the other.
-    fn is_in_block(&self, path: &[Vector3<f64>], own: usize) -> bool {
+    /// How far arm or rod are within a block, m; 0 where they are not. Places nearer than two radii
+    /// share a block: what enters one enters the other.
+    fn within_block(&self, path: &[Vector3<f64>], own: usize) -> f64 {
         let last = path.len().saturating_sub(2);
         let own = self.places[own].device.origin;
-        self.places.iter().map(|place| place.device.origin).any(|block| {
+        let blocks = self.places.iter().map(|place| place.device.origin);
+        let within = blocks.flat_map(|block| {
             let is_entered = (block - own).norm() < 2.0 * self.limits.clear;
-            let segments = path.windows(2).enumerate().filter(|(k, _)| !(is_entered && *k == last));
-            segments.into_iter().any(|(_, ends)| distance(&block, &ends[0], &ends[1]) < self.limits.clear)
-        })
+            let segments = path.windows(2).enumerate().filter(move |(k, _)| !(is_entered && *k == last));
+            segments.map(move |(_, ends)| self.limits.clear - distance(&block, &ends[0], &ends[1]))
+        });
+        within.fold(0.0, f64::max)
     }
+}
+
+/// The joint that is farthest beyond its limits, and how far, rad or m.
+fn beyond_limits(robot: &Robot, q: &[f64]) -> Option<(usize, f64)> {
+    let beyond = q
+        .iter()
+        .zip(&robot.joints)
+        .map(|(&q, joint)| joint.limits.map_or(0.0, |[low, high]| (low - q).max(q - high)));
+    let farthest = beyond.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+    farthest.filter(|(_, by)| *by > 0.0)
 }
 
 /// Distance of a point from a stretch, m.

@@ -38,6 +38,7 @@ pub(super) fn moved(rod: &Rod, variables: &[Variable], step: &[f64]) -> Rod {
     // what sits along the rod stays where the design file has it
     moved.masses.clone_from(&rod.masses);
     moved.joints.clone_from(&rod.joints);
+    moved.sleeves.clone_from(&rod.sleeves);
     moved
 }
 

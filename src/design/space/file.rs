@@ -11,11 +11,12 @@ use crate::design::catalogue::{self, BUILT_IN, Tube, built_in_materials};
 use crate::design::figure::{Figure, Goal};
 use crate::design::limits::{self, Limit};
 use crate::design::values::{Bounds, Raw, limit, values};
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use crate::files;
+use crate::limits as most;
 use crate::material::Material;
-use crate::rod::Joint;
-use crate::rod::file::{Check, MaterialTable, RawFlexibility, RawJoint, RawMass};
+use crate::rod::file::{Check, MaterialTable, RawFlexibility, RawJoint, RawMass, RawSleeve};
+use crate::rod::{Joint, LumpedMass, Sleeve};
 use crate::toml_text::{Number, Required, TomlText};
 use crate::units::{DEG, GRAM, MM};
 
@@ -31,6 +32,8 @@ struct RawSpace {
     mass: Vec<RawMass>,
     #[serde(default)]
     joint: Vec<RawJoint>,
+    #[serde(default)]
+    sleeve: Vec<Spanned<RawSleeve>>,
     #[serde(default)]
     constraints: RawLimits,
     objectives: Spanned<RawGoals>,
@@ -88,6 +91,9 @@ const REQUIRED: &Required = &[
     ("file", "a table of tubes, or \"builtin\""),
     ("mass_g", "the mass in g"),
     ("name", "a name in quotes"),
+    ("material", "the name of one of the file's materials, or of a built-in one"),
+    ("from_mm", "the distance from the flange along the centreline at which the sleeve begins, in mm"),
+    ("to_mm", "the distance from the flange along the centreline at which the sleeve ends, in mm"),
     ("station_mm", "the distance from the flange along the centreline in mm"),
 ];
 
@@ -131,9 +137,9 @@ impl DesignSpace {
     ///
     /// # Errors
     /// [`crate::Error::Syntax`] or [`crate::Error::Input`] with line and column: keys and values
-    /// that are none, limits that contradict one another, more than
-    /// [`MOST_RODS`](super::MOST_RODS) combinations, no
-    /// goal, prices that the catalogue does not have, what is wrong with the catalogue.
+    /// that are none, no goal, prices that the catalogue does not have, what is wrong with the
+    /// catalogue. How many combinations there are is no error of the file: a search of all of them
+    /// says [`DesignSpace::too_much`].
     pub fn from_toml(
         file: &str,
         text: &str,
@@ -160,12 +166,20 @@ impl DesignSpace {
         let tip_mass = range("tip.mass_g", raw.tip.as_ref().map(|tip| &tip.mass_g), GRAM, Bounds::MASS, 0.0)?;
         let flexibility =
             geometry.bend_flexibility.as_ref().map(|raw| check.bend_flexibility(raw)).transpose()?;
-        // which rods are long enough is found out one by one
+        for (count, what) in
+            [(raw.mass.len(), "masses"), (raw.joint.len(), "joints"), (raw.sleeve.len(), "sleeves")]
+        {
+            most::check(file, count, most::ROD_PARTS, what)?;
+        }
+        // which rods are long enough, and hold the sleeves, is found out one by one
         let mut joints: Vec<Joint> = Vec::new();
         for joint in &raw.joint {
             joints.push(check.joint(joint, &joints, f64::INFINITY)?);
         }
         let masses = raw.mass.iter().map(|mass| check.lumped_mass(mass, f64::INFINITY));
+        let masses: Vec<LumpedMass> = masses.collect::<Result<_>>()?;
+        let sleeves = raw.sleeve.iter().map(|sleeve| check.sleeve_apart(sleeve, &materials));
+        let sleeves: Vec<Sleeve> = sleeves.collect::<Result<_>>()?;
         let keys = [
             Some(&geometry.l1_mm),
             Some(&geometry.l2_mm),
@@ -178,8 +192,12 @@ impl DesignSpace {
             let ends = keys[k].and_then(|raw| raw.get_ref().ends());
             ends.map(|ends| ends.map(|end| end * units[k]))
         });
+        let counts = [l1.len(), l2.len(), gamma.len(), bend_radius.len(), tip_mass.len()];
+        let longest = (0..counts.len()).rev().max_by_key(|&k| counts[k]).and_then(|k| keys[k]);
+        let longest = longest.map_or(0, |raw| raw.span().start);
         let space = DesignSpace {
             file: file.to_owned(),
+            longest: Place::of_offset(file, text, longest),
             content: format!("{text}\n{of_catalogue}"),
             l1,
             l2,
@@ -190,8 +208,9 @@ impl DesignSpace {
             ranges,
             tubes,
             is_one_tube: raw.catalogue.same_tube.unwrap_or(true),
-            masses: masses.collect::<Result<_>>()?,
+            masses,
             joints,
+            sleeves,
             limits: limits(&toml, &raw.constraints)?,
             goals: goals(&toml, &raw.objectives)?,
             warnings: Vec::new(),
@@ -350,9 +369,26 @@ minimise = [\"c_rod_um\"]
         let range = "{ from = 100, to = 1000, step = 0.01 }";
         let space =
             read(&TEXT.replace("l1_mm = 150", &format!("l1_mm = {range}")).replace("[400, 500]", range));
-        let much = space.unwrap().is_too_much().unwrap();
-        assert!(much.ends_with("days of computing"), "{much}");
-        assert_eq!(read(TEXT).unwrap().is_too_much(), None);
+        let space = space.unwrap();
+        let tubes = space.tubes.len();
+        let much = space.too_much().unwrap().to_string();
+        let said = format!(
+            "d.toml:2:9: 90001 l1_mm × 90001 l2_mm × {tubes} tubes are {} rods, about 5 days of computing, \
+             expected at most 2000000000",
+            space.combinations()
+        );
+        assert_eq!(much, said);
+        assert!(read(TEXT).unwrap().too_much().is_none());
+        // a frequency costs thirty times as much
+        let goal = "[objectives]\nmaximise = [\"first_frequency_hz\"]";
+        let slow = read(
+            &TEXT
+                .replace("l1_mm = 150", &format!("l1_mm = {range}"))
+                .replace("[400, 500]", range)
+                .replace("[objectives]", goal),
+        );
+        let much = slow.unwrap().too_much().unwrap().to_string();
+        assert!(much.contains("about 155 days of computing"), "{much}");
     }
 
     #[test]

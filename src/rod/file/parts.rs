@@ -9,7 +9,7 @@ use super::check::Check;
 use super::materials::Checked;
 use crate::delimited::nearest_name;
 use crate::error::{Error, Result};
-use crate::material::listed;
+use crate::material::{Material, listed};
 use crate::rod::{Joint, LumpedMass, Pipe, Rod, Sleeve, Warning};
 use crate::toml_text::Number;
 use crate::units::{GRAM, MM, URAD_PER_NM};
@@ -55,7 +55,7 @@ pub struct RawJoint {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a section [[sleeve]]")]
-pub(super) struct RawSleeve {
+pub struct RawSleeve {
     name: String,
     from_mm: Number,
     to_mm: Number,
@@ -96,12 +96,12 @@ impl Check<'_> {
         &mut self,
         which: &'static str,
         raw: &Spanned<RawPipe>,
-        materials: &BTreeMap<&str, Checked>,
+        materials: &BTreeMap<String, Checked>,
     ) -> Result<Pipe> {
         let key = |field: &str| format!("{which}.{field}");
         let named = &raw.get_ref().material;
         let material = named.get_ref();
-        let Some(checked) = materials.get(material.as_str()) else {
+        let Some(checked) = materials.get(material) else {
             return Err(self.unknown_material(&key("material"), named, materials));
         };
         let section = self.section(which, raw)?;
@@ -118,9 +118,9 @@ impl Check<'_> {
         &self,
         key: &str,
         name: &Spanned<String>,
-        materials: &BTreeMap<&str, Checked>,
+        materials: &BTreeMap<String, Checked>,
     ) -> Error {
-        let known: Vec<&str> = materials.keys().copied().collect();
+        let known: Vec<&str> = materials.keys().map(String::as_str).collect();
         let expected = match known.as_slice() {
             [] => "a material with a section [material.NAME]; the file has none".to_owned(),
             known => format!("one of the file's materials: {}", listed(known)),
@@ -166,19 +166,47 @@ impl Check<'_> {
         &mut self,
         raw: &Spanned<RawSleeve>,
         rod: &Rod,
-        materials: &BTreeMap<&str, Checked>,
+        materials: &BTreeMap<String, Checked>,
     ) -> Result<Sleeve> {
         let fields = raw.get_ref();
         let pipe = self.pipe("sleeve", &Spanned::new(raw.span(), fields.pipe()), materials)?;
-        let from = self.station("sleeve.from_mm", &fields.from_mm, rod.length())?;
-        let to = self.station("sleeve.to_mm", &fields.to_mm, rod.length())?;
-        if let Some(expected) = rod.no_stretch(from, to) {
+        let sleeve = self.on(fields, pipe, rod.length())?;
+        if let Some(expected) = rod.no_stretch(sleeve.from, sleeve.to) {
             return Err(self.toml.is("sleeve.to_mm", &fields.to_mm, &expected));
         }
-        if let Some(other) = rod.in_the_way(&pipe.section, from, to) {
+        if let Some(other) = rod.in_the_way(&rod.sleeves, &sleeve.pipe.section, sleeve.from, sleeve.to) {
             let found = format!("the wall of sleeve {:?} would be where that of {other} is", fields.name);
             return Err(self.toml.wrong(raw, found, "a tube over it or in it"));
         }
+        Ok(sleeve)
+    }
+
+    /// A sleeve for rods that are not known yet.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a section, a material or stations that are none.
+    pub fn sleeve_apart(
+        &mut self,
+        raw: &Spanned<RawSleeve>,
+        materials: &BTreeMap<String, Material>,
+    ) -> Result<Sleeve> {
+        let checked = |(name, material): (&String, &Material)| {
+            (name.clone(), Checked { material: material.clone(), laminate_thickness: None })
+        };
+        let checked: BTreeMap<String, Checked> = materials.iter().map(checked).collect();
+        let fields = raw.get_ref();
+        let pipe = self.pipe("sleeve", &Spanned::new(raw.span(), fields.pipe()), &checked)?;
+        let sleeve = self.on(fields, pipe, f64::INFINITY)?;
+        if sleeve.from >= sleeve.to {
+            return Err(self.toml.is("sleeve.to_mm", &fields.to_mm, "an end beyond the beginning, from_mm"));
+        }
+        Ok(sleeve)
+    }
+
+    /// What is read of a sleeve on a rod of this length, m.
+    fn on(&self, fields: &RawSleeve, pipe: Pipe, length: f64) -> Result<Sleeve> {
+        let from = self.station("sleeve.from_mm", &fields.from_mm, length)?;
+        let to = self.station("sleeve.to_mm", &fields.to_mm, length)?;
         Ok(Sleeve { name: fields.name.clone(), from, to, pipe })
     }
 
@@ -186,7 +214,10 @@ impl Check<'_> {
     fn station(&self, key: &str, number: &Number, length: f64) -> Result<f64> {
         let station = self.toml.finite(key, number)? * MM;
         if station < 0.0 || station > length + 1e-6 {
-            let expected = format!("a station on the rod, 0 to {:.3} mm (the tip)", length / MM);
+            let expected = match length.is_finite() {
+                true => format!("a station on the rod, 0 to {:.3} mm (the tip)", length / MM),
+                false => "a station on the rod, 0 mm (the flange) or more".to_owned(),
+            };
             return Err(self.toml.is(key, number, &expected));
         }
         Ok(station.min(length))

@@ -26,6 +26,7 @@ mod intervals;
 mod limits;
 mod nearest;
 mod poses;
+mod proxy;
 mod refine;
 mod resume;
 mod rods_and_modes;
@@ -36,7 +37,7 @@ mod values;
 
 pub use catalogue::{BUILT_IN, Tube, built_in, built_in_materials};
 pub use figure::{Design, Figure, Figures, Goal};
-pub use for_robot::{ForRobot, Proxy, Ranked, for_robot};
+pub use for_robot::{ForRobot, Ranked, for_robot};
 pub use forecast::{Budget, Forecast, Forecaster, Part, Unseen, Where};
 pub use front::Front;
 pub use intervals::{Intervals, indistinguishable};
@@ -46,6 +47,7 @@ pub use poses::{
     Beside, Candidates, Known, Obstacle, PoseCriterion, PoseLimits, PoseStep, PoseStudy, Source, TableHeight,
     Wanted,
 };
+pub use proxy::{Proxy, proxies};
 pub use refine::{Better, Refined, refine, weights};
 pub use rods_and_modes::{RodForecast, rods_and_modes};
 pub use search::{Found, PART, Search, Searched, search};

@@ -35,6 +35,7 @@ mod plot;
 pub mod poses;
 pub mod prediction;
 mod prefix;
+mod proxy;
 pub mod rig;
 pub mod rig_plan;
 mod rod_drawing;

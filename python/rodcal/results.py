@@ -578,6 +578,7 @@ class RodForecast(Record):
     """What to expect of a rod, for each mode."""
 
     rod: str
+    c_rod_um: float | None
     poses: int
     recorded_poses: bool
     modes: list[Expected]
@@ -591,6 +592,7 @@ class ForecastResult(Result):
     unseen: str
     forecasts: list[RodForecast]
     best: dict[str, Any] | None
+    c_rod_as_proxy: list[dict[str, Any]]
 
     def _rows(self) -> list[dict[str, Any]]:
         return [

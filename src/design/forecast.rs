@@ -19,21 +19,23 @@
 //! they can take up is projected out.
 
 mod budget;
+mod fit;
 mod rod;
 mod unseen;
 
 pub use budget::Budget;
 pub use unseen::{Unseen, Where};
 
+use fit::Fit;
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use crate::calibration::campaign::{Campaign, Group};
+use crate::calibration::campaign::{Campaign, Group, Recording};
 use crate::calibration::{Compensation, Mode, Planned, free_parameters, known_before, places};
-use crate::error::{Error, Result};
-use crate::linalg::{positive_definite_inverse, transposed_product};
+use crate::error::Result;
+use crate::linalg::transposed_product;
 use crate::parallel::in_parallel;
 use crate::robot::{Parameter, Setup};
-use crate::statistics::{Random, quantile};
+use crate::statistics::{Random, quantile, standard_deviation};
 
 /// Draws of everything that is unknown.
 const DRAWS: usize = 400;
@@ -112,6 +114,32 @@ pub struct Forecast {
     pub interval: [f64; 2],
     /// Root mean square of each part, m; their squares add up to that of the whole.
     pub parts: [f64; 7],
+    /// The mean square of each draw, m²: those of two forecasts have their chance in common.
+    pub(super) squares: Vec<f64>,
+}
+
+impl Forecast {
+    /// Whether the draws do not distinguish the errors of two forecasts that were made with one
+    /// seed: their mean squares differ by less than two standard errors of the difference.
+    pub fn is_as_good_as(&self, other: &Forecast) -> bool {
+        let apart: Vec<f64> = self.squares.iter().zip(&other.squares).map(|(a, b)| a - b).collect();
+        let scatter = standard_deviation(&apart).unwrap_or(0.0);
+        mean(&apart).abs() <= 2.0 * scatter / (apart.len().max(1) as f64).sqrt()
+    }
+
+    /// No errors at all.
+    #[cfg(test)]
+    pub(super) fn nothing(mode: Mode) -> Forecast {
+        Forecast {
+            mode,
+            mean: 0.0,
+            p95: 0.0,
+            rms: 0.0,
+            interval: [0.0; 2],
+            parts: [0.0; 7],
+            squares: Vec::new(),
+        }
+    }
 }
 
 /// Planned poses of one campaign, and all that a forecast needs beside the mode.
@@ -189,19 +217,18 @@ impl<'c> Forecaster<'c> {
         let loads = rod::Loads::new(self.campaign, mode)?;
         let (setup, free) = (self.setup.clone(), &self.free);
         let planned = Planned::new(setup, free, &loads.truth, &self.places, self.are_unknown, poses);
-        let fit = Fit::new(&planned, &self.known_before(), self.budget.noise).ok_or(Error::Numerical {
-            what: "the forecast",
-            why: "the information of the planned poses is not positive definite".into(),
-        })?;
+        let fit = Fit::new(&planned.rows(), &self.known_before(), &self.unseen.slopes)?;
         let deflected = loads.errors(&planned)?;
-        let bias = self.at_unseen(&fit.correction(&deflected.bias));
-        let unknown: Vec<DVector<f64>> =
-            deflected.unknown.iter().map(|shift| self.at_unseen(&fit.correction(shift))).collect();
-        let groups: Vec<usize> = poses.iter().map(|(group, _)| *group).collect();
+        let seen = Seen {
+            bias: stacked(deflected.bias.into_iter()),
+            unknown: deflected.unknown.into_iter().map(|shift| stacked(shift.into_iter())).collect(),
+            recording: planned.recording().clone(),
+        };
         let draws = in_parallel(DRAWS, |draw| {
             let mut random = Random::seeded(self.budget.seed, draw as u64);
-            self.draw(&fit, &groups, &bias, &unknown, &mut random)
+            self.draw(&fit, &seen, &mut random)
         });
+        let draws: Vec<Draw> = draws.into_iter().collect::<Result<_>>()?;
         let lengths: Vec<f64> = draws.iter().flat_map(|draw| draw.lengths.iter().copied()).collect();
         let means: Vec<f64> = draws.iter().map(|draw| mean(&draw.lengths)).collect();
         let part = |k: usize| (draws.iter().map(|draw| draw.squares[k]).sum::<f64>() / DRAWS as f64).sqrt();
@@ -215,59 +242,59 @@ impl<'c> Forecaster<'c> {
             rms: parts.iter().map(|part| part * part).sum::<f64>().sqrt(),
             interval: [0.025, 0.975].map(|p| quantile(&means, p).unwrap_or(0.0)),
             parts,
+            squares: draws.iter().map(|draw| draw.squares.iter().sum()).collect(),
         })
     }
 
-    /// B′·δρ.
-    fn at_unseen(&self, correction: &DVector<f64>) -> DVector<f64> {
-        &self.unseen.slopes * correction.rows(0, self.free.len())
-    }
-
-    fn draw(
-        &self,
-        fit: &Fit,
-        groups: &[usize],
-        bias: &DVector<f64>,
-        unknown: &[DVector<f64>],
-        random: &mut Random,
-    ) -> Draw {
+    fn draw(&self, fit: &Fit, seen: &Seen, random: &mut Random) -> Result<Draw> {
         let budget = &self.budget;
         let mut vector = |sd: f64| Vector3::from_fn(|_, _| sd * random.normal());
-        let noise: Vec<Vector3<f64>> = groups.iter().map(|_| vector(budget.noise)).collect();
+        let rows = &seen.recording.rows;
+        let noise = stacked(rows.iter().map(|_| vector(budget.noise)));
         let of_clamps: Vec<Vector3<f64>> = self.places.iter().map(|_| vector(budget.clamps)).collect();
-        let clamps: Vec<Vector3<f64>> = groups.iter().map(|&group| of_clamps[group]).collect();
+        let clamps = stacked(rows.iter().map(|row| of_clamps[row.group]));
         let per_axis = 3f64.sqrt().recip();
         let mut scatter = |length: f64| {
-            let all: Vec<f64> =
-                (0..self.unseen.len()).flat_map(|_| <[f64; 3]>::from(vector(length * per_axis))).collect();
-            self.unseen.aligned(DVector::from_vec(all))
+            let all = stacked((0..self.unseen.len()).map(|_| vector(length * per_axis)));
+            self.unseen.aligned(all)
         };
         let (repeatability, instrument) = (scatter(budget.repeatability), scatter(budget.instrument));
-        let drawn = DVector::from_fn(fit.known.len(), |_, _| random.normal());
-        let mut rod = DVector::zeros(bias.len());
-        for shift in unknown {
+        let robot = DVector::from_fn(fit.axes(), |_, _| random.normal());
+        let mut rod = DVector::zeros(noise.len());
+        for shift in &seen.unknown {
             rod += shift * random.normal();
         }
+        let all = &noise + &clamps + &seen.bias + &rod;
+        let weighed = fit.weighed(&seen.recording, &all, &robot, budget.noise, self.campaign.noise)?;
         let parts: [DVector<f64>; 7] = [
-            self.at_unseen(&fit.correction(&noise)),
-            self.at_unseen(&fit.left_of(&drawn)),
-            self.at_unseen(&fit.correction(&clamps)),
-            bias.clone(),
-            rod,
+            weighed.correction(&noise),
+            weighed.left_of(&robot),
+            weighed.correction(&clamps),
+            weighed.correction(&seen.bias),
+            weighed.correction(&rod),
             repeatability,
             instrument,
         ];
         let poses = self.unseen.len().max(1) as f64;
         let total: DVector<f64> = parts.iter().sum();
-        Draw {
+        Ok(Draw {
             squares: parts.each_ref().map(|part| part.norm_squared() / poses),
             lengths: total
                 .as_slice()
                 .chunks_exact(3)
                 .map(|e| e.iter().map(|x| x * x).sum::<f64>().sqrt())
                 .collect(),
-        }
+        })
     }
+}
+
+/// What the calibration will see that is not the robot, of every pose in {W}, m.
+struct Seen {
+    bias: DVector<f64>,
+    /// One standard deviation of each thing that nobody knows of the rod.
+    unknown: Vec<DVector<f64>>,
+    /// The planned poses.
+    recording: Recording,
 }
 
 struct Draw {
@@ -277,43 +304,8 @@ struct Draw {
     lengths: Vec<f64>,
 }
 
-/// The fit that the calibration will make, in units of what is known before.
-struct Fit {
-    /// Rows by columns, divided by the noise, times what is known before.
-    rows: DMatrix<f64>,
-    /// P.
-    inverse: DMatrix<f64>,
-    /// sd of every unknown; of places that nobody knows, a metre.
-    known: Vec<f64>,
-    noise: f64,
-}
-
-impl Fit {
-    fn new(planned: &Planned, known: &[f64], noise: f64) -> Option<Fit> {
-        let blocks = planned.rows();
-        let columns = blocks.first().map_or(0, |block| block.ncols());
-        let mut known = known.to_vec();
-        known.resize(columns, 1.0);
-        let rows = DMatrix::from_fn(3 * blocks.len(), columns, |row, k| {
-            blocks[row / 3][(row % 3, k)] * known[k] / noise
-        });
-        let information = DMatrix::identity(columns, columns) + transposed_product(&rows, &rows);
-        let (inverse, _) = positive_definite_inverse(&information)?;
-        Some(Fit { rows, inverse, known, noise })
-    }
-
-    /// ρ̂ − ρ, SI, where the balls are seen by so much elsewhere, m.
-    fn correction(&self, seen: &[Vector3<f64>]) -> DVector<f64> {
-        let entries: Vec<f64> = seen.iter().flat_map(|e| <[f64; 3]>::from(e / self.noise)).collect();
-        let scaled = &self.inverse * self.rows.tr_mul(&DVector::from_vec(entries));
-        DVector::from_fn(scaled.len(), |k, _| scaled[k] * self.known[k])
-    }
-
-    /// What is left of a robot that is so many standard deviations from its drawing, SI.
-    fn left_of(&self, drawn: &DVector<f64>) -> DVector<f64> {
-        let scaled = -(&self.inverse * drawn);
-        DVector::from_fn(scaled.len(), |k, _| scaled[k] * self.known[k])
-    }
+fn stacked(vectors: impl Iterator<Item = Vector3<f64>>) -> DVector<f64> {
+    DVector::from_vec(vectors.flat_map(<[f64; 3]>::from).collect())
 }
 
 fn mean(values: &[f64]) -> f64 {

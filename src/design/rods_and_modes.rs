@@ -2,9 +2,10 @@
 
 use super::forecast::{Budget, Forecast, Forecaster, Where};
 use super::poses::{PoseCriterion, PoseLimits, PoseStudy, Source, Wanted};
+use crate::beam::Physics;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{Mode, places, planned_setup};
-use crate::compliance::closed_form;
+use crate::compliance::{Compliance, DEFAULT_ELEMENTS, closed_form, paper_contact_force};
 use crate::error::Result;
 use crate::rod::Rod;
 use crate::units::DEG;
@@ -20,6 +21,8 @@ const PER_CLAMP: usize = 30;
 pub struct RodForecast {
     /// The rod's name; empty without a rod.
     pub rod: String,
+    /// c_rod of the beam model under the paper's contact force, m; 0 without a rod.
+    pub c_rod: f64,
     /// Number of poses, and whether they are those of the recording or were chosen by O1.
     pub poses: usize,
     /// See `poses`.
@@ -107,11 +110,18 @@ pub(super) fn rod_forecast(
     });
     Ok(RodForecast {
         rod: rod.map(|rod| rod.name.clone()).unwrap_or_default(),
+        c_rod: rod.map(c_rod).transpose()?.unwrap_or(0.0),
         poses: poses.len(),
         is_recorded,
         modes: modes.map(|mode| forecaster.forecast(&poses, mode)).collect::<Result<_>>()?,
         is_rig_assumed: rod.is_some() && planned.readings.is_none(),
     })
+}
+
+/// c_rod of the beam model under the paper's contact force, m.
+pub(super) fn c_rod(rod: &Rod) -> Result<f64> {
+    let model = Compliance::of_model(rod, &Physics::default(), DEFAULT_ELEMENTS)?;
+    Ok(model.index(paper_contact_force()))
 }
 
 /// The campaign with another rod, nothing recorded, its base where the recording has it.

@@ -4,9 +4,9 @@ use serde_json::{Map, Value, json};
 
 use super::chart::{Axis, Bar, Chart, Colour, Dash, Direction, Figure, Mark, Range, Style};
 use super::table::{Column, Table};
-use super::{Block, Card, Report, Section};
+use super::{Block, Card, Report, Section, proxy};
 use crate::calibration::Campaign;
-use crate::design::{Budget, Forecast, Part, RodForecast};
+use crate::design::{Budget, Forecast, Part, RodForecast, proxies};
 use crate::units::{UM, significant};
 
 /// `mean`, `p95`, `rms`, the interval of the mean and the parts.
@@ -125,6 +125,7 @@ pub fn comparison_json(campaign: &Campaign, rods: &[RodForecast], basis: &Basis)
         .map(|rod| {
             json!({
                 "rod": rod.rod,
+                "c_rod_um": (!rod.rod.is_empty()).then_some(rod.c_rod / UM),
                 "poses": rod.poses,
                 "recorded_poses": rod.is_recorded,
                 "rig_assumed": rod.is_rig_assumed,
@@ -142,7 +143,12 @@ pub fn comparison_json(campaign: &Campaign, rods: &[RodForecast], basis: &Basis)
         "unseen": basis.unseen,
         "forecasts": all,
         "best": best,
+        "c_rod_as_proxy": proxy::json(&proxies(&by_c_rod(rods))),
     })
+}
+
+fn by_c_rod(rods: &[RodForecast]) -> Vec<(f64, &[Forecast])> {
+    rods.iter().map(|rod| (rod.c_rod, rod.modes.as_slice())).collect()
 }
 
 /// What forecasts of several rods stand on.
@@ -172,17 +178,9 @@ impl Basis {
             true => format!(", an instrument that is wrong by {} µm", um(self.budget.instrument)),
             false => String::new(),
         };
-        // docs/design.md, forecast and what then happened: 86 % with 100 µm, 94 % with 30 µm
-        let narrow = match self.has_clamps && self.budget.clamps > 0.0 {
-            true => {
-                " Where clamps are wrong the 95 % interval is somewhat too narrow: of simulated campaigns whose clamps were wrong by \
-                 100 µm it held 86 %."
-            }
-            false => "",
-        };
         format!(
             "At {}{aligned}. {}; repeatability {} µm{clamps}{instrument}. Errors that no parameter of the calibration has \
-             (gears, play, warmth) are not in the forecast: diagnose finds them in a recording.{narrow}",
+             (gears, play, warmth) are not in the forecast: diagnose finds them in a recording.",
             self.unseen,
             self.budget.noise_source,
             um(self.budget.repeatability)
@@ -282,6 +280,11 @@ pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> R
         Block::Table(table("forecast", "rod and mode", &all)),
         Block::Table(parts_table("forecast-parts", "rod and mode", &all)),
     ];
+    let proxies = proxy::sentences(&proxies(&by_c_rod(rods)));
+    if !proxies.is_empty() {
+        blocks.push(Block::Paragraph("Would c_rod have ranked these rods as their errors do?".into()));
+        blocks.push(Block::List(proxies));
+    }
     let assumed: Vec<&str> =
         rods.iter().filter(|rod| rod.is_rig_assumed).map(|rod| rod.rod.as_str()).collect();
     if !assumed.is_empty() {

@@ -121,8 +121,8 @@ impl Rod {
         ))
     }
 
-    /// A pipe or one of the sleeves `others` whose wall would be where that of `section` is, along a
-    /// stretch from `from` to `to` (m), by its name. Of rounds; other sections are not compared.
+    /// A pipe or one of the sleeves `others` whose wall would be where that of `section` is, along
+    /// a stretch from `from` to `to` (m), by its name. Of rounds; other sections are not compared.
     pub(super) fn in_the_way(
         &self,
         others: &[Sleeve],

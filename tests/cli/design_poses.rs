@@ -104,6 +104,16 @@ fn a_campaign_that_is_not_recorded_yet_can_be_planned_and_not_calibrated() {
     assert!(of_rod(0, "none", "rod_bias_um") > 5.0 * of_rod(0, "fea", "rod_uncertainty_um"));
     assert_eq!(of_rod(1, "fea", "rod_bias_um"), 0.0);
     assert!(of_rod(1, "fea", "rod_uncertainty_um") > 2.0 * of_rod(1, "meas", "rod_uncertainty_um"));
+    // two rods have no order to speak of, five have
+    assert_eq!(json["c_rod_as_proxy"], serde_json::json!([]));
+    let five = line.replace("rods/4.toml", "rods/2.toml rods/3.toml rods/4.toml rods/5.toml");
+    let json = sandbox.run(&five).json();
+    let none = &json["c_rod_as_proxy"][0];
+    assert_eq!(none["mode"], "none");
+    assert!(number(&none["spearman"]) > 0.7, "{none}");
+    assert!((number(&json["forecasts"][3]["c_rod_um"]) - 401.985851).abs() < 1e-6);
+    let said = sandbox.run(&five.replace(" --json", "")).succeeded().stdout;
+    assert!(said.contains("Would c_rod have ranked these rods"), "{said}");
 }
 
 #[test]

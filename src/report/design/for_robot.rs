@@ -3,10 +3,10 @@
 use serde_json::{Map, Value, json};
 
 use crate::calibration::Mode;
-use crate::design::{ForRobot, Proxy};
+use crate::design::{ForRobot, Forecast, Proxy, Ranked};
 use crate::report::chart::{Chart, Figure, Mark, Marker, Point, Style};
 use crate::report::table::{Column, Table};
-use crate::report::{Block, Card, Section, Tone, forecast};
+use crate::report::{Block, Card, Section, Tone, forecast, proxy};
 use crate::units::{UM, significant};
 
 /// What the JSON has of the designs for one robot.
@@ -25,16 +25,8 @@ pub fn for_robot_json(found: &ForRobot) -> Value {
         }
         Value::Object(object)
     });
-    let proxies = found.proxies.iter().map(|proxy| {
-        json!({
-            "mode": proxy.mode.name(),
-            "spearman": proxy.r,
-            "interval": proxy.interval,
-            "rms_um": proxy.rms.map(|rms| rms / UM),
-        })
-    });
     let [designs, front] = found.of_front;
-    json!({ "designs_ranked": designs, "front": front, "ranked": ranked.collect::<Vec<_>>(), "c_rod_as_proxy": proxies.collect::<Vec<_>>() })
+    json!({ "designs_ranked": designs, "front": front, "ranked": ranked.collect::<Vec<_>>(), "c_rod_as_proxy": proxy::json(&found.proxies) })
 }
 
 /// Designs by the accuracy that the robot will have.
@@ -63,26 +55,7 @@ pub fn for_robot_section(found: &ForRobot) -> Section {
          robot's error: a rod that is not on it may be better for this robot."
             .into(),
     )];
-    let proxies = found.proxies.iter().map(|proxy| {
-        let [low, high] = proxy.rms;
-        let what = match (is_alike(proxy), proxy.interval) {
-            (true, _) => "no rod is better than another by 5 %, so that c_rod need not be looked at",
-            (_, [from, _]) if from > 0.5 => "c_rod is a good proxy",
-            (_, [_, to]) if to < 0.5 => "c_rod is no proxy",
-            _ => "these rods do not tell whether c_rod is a proxy",
-        };
-        let r = |r: f64| format!("{r:.2}").replace('-', "−");
-        format!(
-            "Mode {}: {what}. Error {} to {} µm; it follows c_rod with a rank correlation of {} ({} to {}).",
-            proxy.mode.name(),
-            um(low),
-            um(high),
-            r(proxy.r),
-            r(proxy.interval[0]),
-            r(proxy.interval[1])
-        )
-    });
-    let proxies: Vec<String> = proxies.collect();
+    let proxies = proxy::sentences(&found.proxies);
     if !proxies.is_empty() {
         blocks.push(Block::List(proxies));
     }
@@ -91,17 +64,18 @@ pub fn for_robot_section(found: &ForRobot) -> Section {
     Section::new("For this robot", blocks)
 }
 
-/// The least error that any of the rods leaves, its rod and its mode.
-fn best(found: &ForRobot) -> Option<(&str, Mode, f64)> {
-    let all = found.ranked.iter().flat_map(|one| {
-        Mode::ALL.into_iter().filter_map(move |mode| Some((one.name.as_str(), mode, one.of(mode)?.rms)))
-    });
-    all.min_by(|a, b| a.2.total_cmp(&b.2))
+/// The first rod of the table, the mode that it is first in, what is to be expected, and how many
+/// other rods cannot be distinguished from it.
+fn best(found: &ForRobot) -> Option<(&str, &Forecast, usize)> {
+    let first = found.ranked.first()?;
+    let least = first.of(Mode::Fea).or_else(|| first.of(Mode::None))?;
+    let as_good = |one: &&Ranked| one.of(least.mode).is_some_and(|other| other.is_as_good_as(least));
+    Some((&first.name, least, found.ranked[1..].iter().filter(as_good).count()))
 }
 
 /// What is to be expected of the robot, for the headline: nothing where no rod can be measured.
 pub fn for_robot_headline(found: &ForRobot) -> String {
-    let Some((name, mode, rms)) = best(found) else {
+    let Some((name, least, as_good)) = best(found) else {
         return String::new();
     };
     let um = |size: f64| significant(size / UM, 3);
@@ -111,12 +85,18 @@ pub fn for_robot_headline(found: &ForRobot) -> String {
         false => format!("{ranked} designs of a front of {front}"),
     };
     let designs = if front == 1 { "the one design of the front".to_owned() } else { designs };
+    let as_good = match as_good {
+        0 => String::new(),
+        1 => ", one other as good as far as the forecast can tell".to_owned(),
+        n => format!(", {n} others as good as far as the forecast can tell"),
+    };
     let best = format!(
-        "Of {designs}, {name} leaves this robot the smallest error: {} µm rms in mode {}",
-        um(rms),
-        mode.name()
+        "Of {designs}, {name} leaves this robot the smallest error in mode {}: {} µm rms{as_good}",
+        least.mode.name(),
+        um(least.rms),
     );
-    let (alike, apart): (Vec<&Proxy>, Vec<&Proxy>) = found.proxies.iter().partition(|proxy| is_alike(proxy));
+    let (alike, apart): (Vec<&Proxy>, Vec<&Proxy>) =
+        found.proxies.iter().partition(|proxy| proxy::is_alike(proxy));
     let apart = apart.iter().map(|proxy| {
         let [low, high] = proxy.rms;
         format!("; in mode {} it depends on the rod: {} to {} µm", proxy.mode.name(), um(low), um(high))
@@ -132,11 +112,11 @@ pub fn for_robot_headline(found: &ForRobot) -> String {
 
 /// The least error as a card.
 pub fn for_robot_card(found: &ForRobot) -> Option<Card> {
-    let (name, mode, rms) = best(found)?;
-    let detail = format!("{name}, mode {}", mode.name());
+    let (name, least, _) = best(found)?;
+    let detail = format!("{name}, mode {}", least.mode.name());
     let refused = found.ranked.iter().filter(|one| one.forecast.is_err()).count();
     let card =
-        Card::new("Least error of this robot, rms", format!("{} µm", significant(rms / UM, 3)), detail);
+        Card::new("Least error of this robot, rms", format!("{} µm", significant(least.rms / UM, 3)), detail);
     Some(if refused > 0 { card.toned(Tone::Attention) } else { card })
 }
 
@@ -162,12 +142,4 @@ fn picture(found: &ForRobot) -> Option<Figure> {
     let caption = "What is to be expected of the robot with each rod, against how compliant the rod is. Where modes are as good, \
                    one mark hides the others.";
     (!chart.marks.is_empty()).then(|| Figure::from(chart).named("for-robot").captioned(caption))
-}
-
-/// Errors up to so many times the least are as good as that.
-const EQUAL: f64 = 1.05;
-
-/// Whether no rod is better than another in a mode.
-fn is_alike(proxy: &Proxy) -> bool {
-    proxy.rms[1] <= proxy.rms[0] * EQUAL
 }

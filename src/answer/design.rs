@@ -126,9 +126,14 @@ fn effects(names: &[String]) -> Result<Vec<&'static Effect>> {
                 expected: format!("one of {}", effect_names().join(", ")),
             });
         };
-        if !effects.contains(&effect) {
-            effects.push(effect);
+        if effects.contains(&effect) {
+            return Err(Error::Argument {
+                name: "between",
+                found: names.join(","),
+                expected: format!("{name} once: each is distinguished from every other one and from nothing"),
+            });
         }
+        effects.push(effect);
     }
     Ok(effects)
 }

@@ -201,10 +201,10 @@ fn measurements(plan: &RigPlan, rod: &Rod) -> Vec<Block> {
     }
     let least = match (plan.ratio, plan.is_least) {
         _ if plan.measurements.is_empty() => "",
-        (Some(_), _) if plan.measurements.iter().all(|one| one.loads.repeats == 1) => {
-            "Each line is loaded once. Fewer loads on it were not considered."
+        (Some(_), _) => {
+            "Of lines of four to twelve loads, evenly up to the largest, and any number of repeats, none that is enough takes less \
+             time. Other loads were not considered."
         }
-        (Some(_), _) => "Fewer repeats of these loads would not be enough. Other loads were not considered.",
         (None, true) => {
             "Proven to be the least effort: of the measurements that were considered, no plan of less time is enough."
         }

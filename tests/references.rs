@@ -114,3 +114,39 @@ fn response_between_stations() {
         }
     });
 }
+
+/// What displacement elements extrapolate to, and what is left of this program's 60 elements in the
+/// fourth mode, which twists.
+const EXTRAPOLATED: f64 = 3e-7;
+const OF_SIXTY: f64 = 6e-6;
+
+#[derive(Deserialize)]
+struct Swinging {
+    name: String,
+    rod_toml: String,
+    first_frequencies_hz: Vec<f64>,
+}
+
+/// `tests/references/natural_frequencies.py`: Timoshenko elements of twelve freedoms (Przemieniecki
+/// 1968; Friedman and Kosmatka 1993), which know stiffnesses, not flexibilities.
+#[test]
+fn rods_swing_as_displacement_elements_do() {
+    let cases: Vec<Swinging> =
+        serde_json::from_str(include_str!("references/natural_frequencies.json")).unwrap();
+    assert_eq!(cases.len(), 2);
+    for case in cases {
+        let rod = Rod::from_toml("rod.toml", &case.rod_toml).unwrap();
+        let fine = RodModel::new(&rod, &Physics::WHOLE, 800, &[]).unwrap().chain;
+        let count = case.first_frequencies_hz.len();
+        for (modes, allowed) in [
+            (rod.natural_modes(count).unwrap(), OF_SIXTY),
+            (fine.natural_modes(count).unwrap(), EXTRAPOLATED),
+        ] {
+            assert_eq!(modes.len(), count);
+            for (mode, reference) in modes.iter().zip(&case.first_frequencies_hz) {
+                let error = (mode.frequency / reference - 1.0).abs();
+                assert!(error <= allowed, "{}: {} Hz, {reference} Hz", case.name, mode.frequency);
+            }
+        }
+    }
+}

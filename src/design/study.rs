@@ -1,6 +1,6 @@
 //! A search with everything that is to be said of its front.
 
-use super::figure::{Design, Figure, Figures, Goal};
+use super::figure::{Design, Figure, Figures};
 use super::front::betters;
 use super::intervals::{Intervals, indistinguishable};
 use super::refine::{Refined, refine, weights};
@@ -167,11 +167,6 @@ impl Study {
                 },
             }),
         }
-    }
-
-    /// The first goal, and the second where there is one.
-    pub fn axes(&self) -> (Goal, Option<Goal>) {
-        (self.space.goals[0], self.space.goals.get(1).copied())
     }
 }
 

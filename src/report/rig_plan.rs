@@ -258,18 +258,29 @@ fn picture(plan: &RigPlan, rod: &Rod) -> Option<super::chart::Figure> {
             cases.push(ShapeCase { label, deflection_um: moved.collect() });
         }
     }
-    let station = |(station, kind, numbers): (f64, StationKind, Vec<String>)| Station {
-        label: match kind {
-            StationKind::Load => format!("load {}", numbers.join(", ")),
-            _ => format!("read {}", numbers.join(", ")),
-        },
-        at_mm: (rod.point(station) / MM).into(),
-        kind,
+    // where a load hangs at a sensor one label is enough
+    let beside = |station: f64, kind: StationKind| {
+        let other = marks.iter().find(|(at, what, _)| (*at - station).abs() < MM && *what != kind);
+        other.map(|(_, _, numbers)| numbers.join(", "))
+    };
+    let station = |(station, kind, numbers): &(f64, StationKind, Vec<String>)| {
+        let numbers = numbers.join(", ");
+        Station {
+            label: match (kind, beside(*station, *kind)) {
+                (StationKind::Load, None) => format!("load {numbers}"),
+                (StationKind::Load, Some(read)) if read == numbers => format!("load and read {numbers}"),
+                (StationKind::Load, Some(read)) => format!("load {numbers}, read {read}"),
+                (_, None) => format!("read {numbers}"),
+                (_, Some(_)) => String::new(),
+            },
+            at_mm: (rod.point(*station) / MM).into(),
+            kind: *kind,
+        }
     };
     let figure = rod_shape(&RodShape {
         centreline_mm: places().map(|p| (p / MM).into()).collect(),
         cases,
-        stations: marks.into_iter().map(station).collect(),
+        stations: marks.iter().map(station).collect(),
         ..drawing(rod)
     });
     let caption = "Where loads hang and sensors stand, by the number of the measurement, and how the rod bends under the largest \

@@ -17,22 +17,39 @@ fn label(goal: Number) -> String {
     }
 }
 
-/// The first two goals against each other; none where there is only one.
+/// The first goal against each other one, a panel for each; none where there is only one.
 pub fn front(study: &Study) -> Option<Figure> {
-    let (first, second) = study.axes();
-    let second = second?;
+    let (first, others) = study.space.goals.split_first()?;
+    let panels: Vec<Chart> = others.iter().map(|second| pair(study, *first, *second)).collect();
+    let others = others.iter().map(|goal| goal.figure.name_and_unit().0).collect::<Vec<_>>().join(" and ");
+    let (name, more) = match panels.len() {
+        0 => return None,
+        1 => (others, ""),
+        _ => (others, " Designs that seem bettered in one panel are better in another goal."),
+    };
+    Some(Figure {
+        name: "front".into(),
+        caption: format!(
+            "Designs that none betters: {} against {name}. Bars: 95 % intervals from the standard uncertainties of the rod's \
+             numbers.{more}",
+            first.figure.name_and_unit().0
+        ),
+        columns: panels.len().min(2),
+        shared_legend: panels.len() > 1,
+        panels,
+        ..Figure::default()
+    })
+}
+
+fn pair(study: &Study, first: Goal, second: Goal) -> Chart {
     let mut chart = Chart::new("", label(first.figure), label(second.figure));
     let spans_much = |goal: Goal| {
         let values = || study.found.front.iter().filter_map(|design| design.figures.get(goal.figure));
         let (low, high) = values().fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
         low > 0.0 && high > 20.0 * low
     };
-    if spans_much(first) {
-        chart.x = chart.x.log();
-    }
-    if spans_much(second) {
-        chart.y = chart.y.log();
-    }
+    chart.x.log = spans_much(first);
+    chart.y.log = spans_much(second);
     let at = |goal: Goal, design: &crate::design::Design| design.figures.get(goal.figure).unwrap_or(f64::NAN);
     let all: Vec<[f64; 2]> =
         study.found.front.iter().map(|design| [at(first, design), at(second, design)]).collect();
@@ -71,18 +88,7 @@ pub fn front(study: &Study) -> Option<Figure> {
             style: Style::nth(1).marker(Marker::Diamond).size(6.0),
         });
     }
-    let (x, y) = (first.figure.name_and_unit().0, second.figure.name_and_unit().0);
-    let more = if study.space.goals.len() > 2 {
-        " Designs that seem bettered here are better in another goal."
-    } else {
-        ""
-    };
-    Some(
-        Figure::from(chart).named("front").captioned(format!(
-            "Designs that none betters: {x} against {y}. Bars: 95 % intervals from the standard uncertainties of the \
-             rod's numbers.{more}"
-        )),
-    )
+    chart
 }
 
 /// Some rods of the front beside each other, and the one to compare with.

@@ -122,24 +122,29 @@ pub fn for_robot_card(found: &ForRobot) -> Option<Card> {
 
 /// Error against c_rod, a mark for each mode.
 fn picture(found: &ForRobot) -> Option<Figure> {
-    const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Plus, Marker::Triangle, Marker::Diamond];
+    // from the largest mark to the smallest, so that each is seen beside those that lie on it
+    const MARKERS: [(Marker, f64); 4] =
+        [(Marker::Circle, 7.0), (Marker::Square, 4.5), (Marker::Triangle, 4.5), (Marker::Plus, 3.5)];
     let mut chart = Chart::new("", "c_rod / µm", "root mean square error / µm");
     let indices = || found.ranked.iter().map(|one| one.c_rod);
     let (low, high) = indices().fold((f64::INFINITY, 0.0f64), |(a, b), c| (a.min(c), b.max(c)));
     if low > 0.0 && high > 20.0 * low {
         chart.x = chart.x.log();
     }
-    for (mode, marker) in Mode::ALL.into_iter().zip(MARKERS) {
+    for (mode, (marker, size)) in Mode::ALL.into_iter().zip(MARKERS) {
         let at = |rms: f64, c_rod: f64| Point { x: c_rod / UM, y: rms / UM, error: 0.0 };
         let points = found.ranked.iter().filter_map(|one| Some(at(one.of(mode)?.rms, one.c_rod)));
         let points: Vec<Point> = points.collect();
         if !points.is_empty() {
             let label = format!("mode {}", mode.name());
-            chart =
-                chart.with(Mark::Points { label, points, style: Style::nth(mode as usize).marker(marker) });
+            chart = chart.with(Mark::Points {
+                label,
+                points,
+                style: Style::nth(mode as usize).marker(marker).size(size),
+            });
         }
     }
     let caption = "What is to be expected of the robot with each rod, against how compliant the rod is. Where modes are as good, \
-                   one mark hides the others.";
+                   their marks lie on one another.";
     (!chart.marks.is_empty()).then(|| Figure::from(chart).named("for-robot").captioned(caption))
 }

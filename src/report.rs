@@ -42,6 +42,7 @@ mod rod_drawing;
 pub mod runs;
 mod scale;
 mod sensitivities;
+mod swing;
 mod switch;
 pub mod table;
 pub mod text;

@@ -9,14 +9,14 @@ use known::{INTERVAL, Known};
 pub(super) use numbers::in_um;
 pub use numbers::{number, rows};
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use serde_json::{Value, json};
 
 use super::pictures::{RodShape, ShapeCase, rod_shape};
 use super::rod_drawing::drawing;
 use super::sensitivities::{self, OnePercent};
 use super::table::{Column, Table};
-use super::{Block, Card, Report, Section};
+use super::{Block, Card, Report, Section, swing};
 use crate::beam::{NaturalMode, settling_time};
 use crate::compliance::{
     Compliance, LINEAR_SHARE, Mode, Sensitivity, Shape, StationResponse, Strength, Study, TipLoad,
@@ -55,7 +55,7 @@ pub fn json(study: &Study) -> Value {
         "mass_g": study.rod.mass() / GRAM,
         "natural_frequencies_hz": study.shape.modes.iter().map(|mode| mode.frequency).collect::<Vec<_>>(),
         "settling_times_s": study.damping_ratio.map(|ratio| {
-            let time = |mode: &NaturalMode| settling_time(mode.frequency, ratio, SHARE);
+            let time = |mode: &NaturalMode| settling_time(mode.frequency, ratio, swing::SHARE);
             study.shape.modes.iter().map(time).collect::<Vec<_>>()
         }),
         "contributions": steps,
@@ -137,7 +137,12 @@ pub fn sections(study: &Study) -> Vec<Section> {
         ),
     ];
     sections.extend(what_counts(study));
-    sections.extend(swing(study));
+    sections.extend(swing::section(
+        &study.rod,
+        &study.shape.centreline,
+        &study.shape.modes,
+        study.damping_ratio,
+    ));
     sections
 }
 
@@ -202,65 +207,6 @@ fn what_counts(study: &Study) -> Option<Section> {
         .named_block("sensitivities", "What 1 % more of each number does: the numbers that count most.");
     let table = Block::Table(sensitivities::table("sensitivities", caption, &heads, &rows));
     Some(Section::new(format!("What counts, rod {}", rod.name), vec![table, figure]))
-}
-
-/// What a swing dies down to in the settling time.
-const SHARE: f64 = 0.02;
-
-/// How fast the rod swings, and in which shapes; nothing of a rod without mass.
-fn swing(study: &Study) -> Option<Section> {
-    /// Damping ratios of bare tubes, and with bonded or threaded joints.
-    const DAMPING: [f64; 2] = [0.002, 0.01];
-    let damping = study.damping_ratio.map_or(DAMPING.to_vec(), |ratio| vec![ratio]);
-    let (rod, modes) = (&study.rod, &study.shape.modes);
-    if modes.is_empty() {
-        return None;
-    }
-    let mut columns = vec![Column::text("mode"), Column::text("swings"), Column::number("frequency", "Hz")];
-    columns.extend(
-        damping
-            .iter()
-            .map(|ratio| Column::number(format!("to 2 % at {} % damping", (1e5 * ratio).round() / 1e3), "s")),
-    );
-    let caption = format!("Rod {}: slowest natural modes, clamped at the flange.", rod.name);
-    let mut table = Table::new("natural-frequencies", caption, columns);
-    let direction = |mode: &NaturalMode| {
-        let sum = |axis: usize| mode.shape.iter().map(|[u, _]| u[axis].powi(2)).sum::<f64>();
-        let (across, within) = (sum(1), sum(0) + sum(2));
-        match across / (across + within) {
-            share if share > 0.99 => "out of the rod's plane",
-            share if share < 0.01 => "in the rod's plane",
-            _ => "both ways",
-        }
-    };
-    for (k, mode) in modes.iter().enumerate() {
-        let mut cells = vec![(k + 1).to_string(), direction(mode).to_owned(), significant(mode.frequency, 4)];
-        cells
-            .extend(damping.iter().map(|ratio| significant(settling_time(mode.frequency, *ratio, SHARE), 2)));
-        table.row(cells);
-    }
-    // a tip that swings by 1 mm
-    let shapes = |mode: &NaturalMode| mode.shape.iter().map(|[u, _]| u * MM).collect::<Vec<_>>();
-    let all: Vec<Vec<Vector3<f64>>> = modes.iter().map(shapes).collect();
-    let cases = modes.iter().zip(&all).map(|(mode, shape)| ShapeCase {
-        label: format!("{} Hz", significant(mode.frequency, 4)),
-        deflection_um: shape.iter().map(|u| (u / UM).into()).collect(),
-    });
-    let figure = rod_shape(&RodShape {
-        centreline_mm: study.shape.centreline.iter().map(|p| (p / MM).into()).collect(),
-        cases: cases.collect(),
-        ..drawing(rod)
-    });
-    let words = "Exact flexibilities, consistent mass of Timoshenko beams with rotary inertia; the robot is assumed rigid. \
-         Readings within the settling time of a move are readings of a swing.";
-    Some(Section::new(
-        format!("How rod {} swings", rod.name),
-        vec![
-            Block::Paragraph(words.into()),
-            Block::Table(table),
-            figure.named_block("natural-modes", "Shapes of the slowest natural modes."),
-        ],
-    ))
 }
 
 /// One sentence: how much the rod bends.

@@ -18,7 +18,7 @@ pub use self::for_robot::{for_robot_card, for_robot_headline, for_robot_json, fo
 use super::chart::Figure as Picture;
 use super::sensitivities::{self, OnePercent};
 use super::table::{Column, Table};
-use super::{Block, Report, Section};
+use super::{Block, Report, Section, swing};
 use crate::design::{Design, Figure, Figures, Goal, Impossible, Limit, Shown, Study};
 use crate::rod::NominalNumber;
 use crate::units::{significant, with_uncertainty};
@@ -191,6 +191,7 @@ pub fn report(study: &Study) -> Report {
         sections.push(Section::new("To scale", vec![Block::Figure(figures::to_scale(study))]));
         sections.extend(study.refined.as_ref().map(|found| refined::section(study, found)));
         sections.push(what_counts(study));
+        sections.extend(study.shown.first().and_then(|shown| swing::of_rod(&shown.rod)));
     }
     sections.push(Section::new("What was looked at", looked_at(study)));
     Report {

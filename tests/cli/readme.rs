@@ -264,7 +264,11 @@ fn the_pictures_in_the_documents_are_current() {
         ("design rod examples/small-arm.toml", "figure-1-front", "front-small-arm"),
         ("compliance designs/design-012.toml", "figure-5-natural-modes", "modes-small-arm"),
         ("design poses campaigns/tx90-5/campaign.toml --count 60", "figure-1-pose-plan", "pose-plan-tx90"),
-        ("design poses campaigns/tx90-5/campaign.toml --count 60", "figure-3-error-budget", "error-budget-tx90"),
+        (
+            "design poses campaigns/tx90-5/campaign.toml --count 60",
+            "figure-3-error-budget",
+            "error-budget-tx90",
+        ),
     ] {
         sandbox.run(&format!("{command} --out {picture}")).succeeded();
         let shown = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/pictures/{picture}.svg"));

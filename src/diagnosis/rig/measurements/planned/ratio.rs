@@ -17,10 +17,10 @@ use crate::units::{UM, significant};
 /// Loads of a line, evenly up to the largest: enough to see that it is one, no more than anybody
 /// hangs up.
 const LOADS: std::ops::RangeInclusive<usize> = 4..=12;
-/// Half of the 95 % interval that a fit gives, in standard deviations that noise alone makes: in the
-/// mean of 4000 simulated recordings of [`LOADS`] (rows) and 1, 2, 3, 4 to 5, 6 and more repeats.
-/// A fit of one repeat knows its scatter by two degrees of freedom a line less than it has loads;
-/// one of two takes differences between its two zeros for what they may be.
+/// Half of the 95 % interval that a fit gives, in standard deviations that noise alone makes: in
+/// the mean of 4000 simulated recordings of [`LOADS`] (rows) and 1, 2, 3, 4 to 5, 6 and more
+/// repeats. A fit of one repeat knows its scatter by two degrees of freedom a line less than it has
+/// loads; one of two takes differences between its two zeros for what they may be.
 const HALVES: [[f64; 5]; 9] = [
     [3.45, 3.44, 2.97, 2.91, 2.88],
     [2.64, 3.21, 2.64, 2.54, 2.50],

@@ -2,6 +2,10 @@
 
 pub mod laminate;
 
+use std::sync::Arc;
+
+use self::laminate::Ply;
+
 use crate::dual::Number;
 
 /// The linear elastic constants a straight or curved pipe needs.
@@ -27,6 +31,8 @@ pub struct Material<T = f64> {
     pub shear_coefficient_factor: T,
     /// How well these numbers are known.
     pub standard_uncertainty: MaterialUncertainty,
+    /// The plies that E, G and ν were made of, where the file has a laminate.
+    pub plies: Option<Arc<[Ply]>>,
 }
 
 /// Relative standard uncertainties of a material's numbers: 1 σ over the value, dimensionless;
@@ -124,6 +130,7 @@ impl Material {
             yield_strength: None,
             shear_coefficient_factor: 1.0,
             standard_uncertainty: MaterialUncertainty::ISOTROPIC,
+            plies: None,
         };
         match material.is_anisotropic() {
             true => Material { standard_uncertainty: MaterialUncertainty::ANISOTROPIC, ..material },

@@ -10,6 +10,7 @@ use crate::beam::{Physics, RodModel};
 use crate::dual::Dual;
 use crate::error::Result;
 use crate::material::Material;
+use crate::material::laminate::{self, Ply, PlyNumber};
 use crate::parallel::in_parallel;
 use crate::rod::{NominalNumber, Rod};
 use crate::units::STANDARD_GRAVITY;
@@ -30,6 +31,17 @@ pub struct Sensitivity {
     pub mass: f64,
     /// Of the first natural frequency (all physics), Hz; 0 where nothing has mass.
     pub frequency: f64,
+}
+
+impl Sensitivity {
+    /// With so much of another one.
+    fn add(&mut self, other: &Sensitivity, factor: f64) {
+        self.compliance.force += other.compliance.force * factor;
+        self.compliance.gravity += other.compliance.gravity * factor;
+        self.index += other.index * factor;
+        self.mass += other.mass * factor;
+        self.frequency += other.frequency * factor;
+    }
 }
 
 /// Derivatives of `rod` by every number of it ([`Rod::numbers`]) under `physics`, and with a
@@ -82,7 +94,40 @@ pub fn sensitivities(rod: &Rod, physics: &Physics, contact_force: f64) -> Result
             along_with_shear_modulus(&mut all, material);
         }
     }
+    for (material, plies) in rod.plies() {
+        let of_number = |number| by_ply(&all, material, plies, number);
+        let own: Vec<Sensitivity> = PlyNumber::all(plies.len()).filter_map(of_number).collect();
+        all.extend(own);
+    }
     Ok(all)
+}
+
+/// The derivative by a number of a laminate's plies, of which E, G and ν are made:
+///
+/// ```text
+/// d/dp = ∂E/∂p·∂/∂E + ∂G/∂p·∂/∂G + ∂ν/∂p·∂/∂ν
+/// ```
+fn by_ply(all: &[Sensitivity], material: &str, plies: &[Ply], number: PlyNumber) -> Option<Sensitivity> {
+    let name = || material.to_owned();
+    let slopes = laminate::slopes(plies, number)?;
+    let made = [
+        NominalNumber::YoungsModulus(name()),
+        NominalNumber::ShearModulus(name()),
+        NominalNumber::PoissonRatio(name()),
+    ];
+    let mut sum = Sensitivity {
+        number: NominalNumber::Ply(name(), number),
+        value: number.value_in(plies)?,
+        compliance: Compliance { force: Matrix3::zeros(), gravity: Matrix3::zeros() },
+        index: 0.0,
+        mass: 0.0,
+        frequency: 0.0,
+    };
+    for (made, slope) in made.iter().zip(slopes) {
+        let one = all.iter().find(|one| one.number == *made)?;
+        sum.add(one, slope);
+    }
+    Some(sum)
 }
 
 /// Derivatives by E and ν where G follows them, instead of one by G:
@@ -101,11 +146,7 @@ fn along_with_shear_modulus(all: &mut Vec<Sensitivity>, material: &Material) {
         (NominalNumber::PoissonRatio(name.clone()), -g / (1.0 + material.poisson_ratio)),
     ] {
         if let Some(one) = all.iter_mut().find(|one| one.number == number) {
-            one.compliance.force += by_it.compliance.force * factor;
-            one.compliance.gravity += by_it.compliance.gravity * factor;
-            one.index += by_it.index * factor;
-            one.mass += by_it.mass * factor;
-            one.frequency += by_it.frequency * factor;
+            one.add(&by_it, factor);
         }
     }
 }
@@ -259,5 +300,35 @@ mod tests {
         let at = |station: f64| Compliance::of_model(&rod(station), &Physics::WHOLE, 5).unwrap().index(2.0);
         let expected = (at(0.3001) - at(0.2999)) / 2e-4;
         assert!((stations[0].index / expected - 1.0).abs() < 1e-6, "{} {expected}", stations[0].index);
+    }
+
+    /// A laminate's plies, against rods whose files have other ones.
+    #[test]
+    fn a_laminate_is_followed_into_its_plies() {
+        let text = std::fs::read_to_string("rods/2.toml").unwrap();
+        let from = text.find("[material.").unwrap();
+        let to = from + text[from..].find("[pipe1]").unwrap();
+        let name = text[from + "[material.".len()..].split(']').next().unwrap().to_owned();
+        let file = |e1: f64, angle: f64| {
+            let material = format!(
+                "[material.{name}]\nply_e1_gpa = {e1:?}\nply_e2_gpa = 9.0\nply_g12_gpa = 5.0\nply_nu12 = 0.3\n\
+                 ply_thickness_mm = 0.25\nply_angles_deg = [0.0, 0.0, {angle:?}, -45.0]\ndensity_kg_m3 = 1600.0\n"
+            );
+            Rod::from_toml("rod.toml", &format!("{}{material}{}", &text[..from], &text[to..])).unwrap()
+        };
+        let index = |rod: &Rod| {
+            Compliance::of_model(rod, &Physics::default(), 4).unwrap().index(paper_contact_force())
+        };
+        let all = sensitivities(&file(130.0, 45.0), &Physics::default(), paper_contact_force()).unwrap();
+        let by = |number: PlyNumber| {
+            let wanted = NominalNumber::Ply(name.clone(), number);
+            all.iter().find(|one| one.number == wanted).unwrap().index
+        };
+        let of_e1 = (index(&file(130.1, 45.0)) - index(&file(129.9, 45.0))) / 0.2e9;
+        assert!((by(PlyNumber::E1) / of_e1 - 1.0).abs() < 1e-5, "{} {of_e1}", by(PlyNumber::E1));
+        let of_angle = (index(&file(130.0, 45.1)) - index(&file(130.0, 44.9))) / 0.2f64.to_radians();
+        assert!((by(PlyNumber::Angle(2)) / of_angle - 1.0).abs() < 1e-5, "{of_angle}");
+        // fibres along the pipe: at 0° nothing changes to first order but by coupling
+        assert_eq!(all.iter().filter(|one| matches!(one.number, NominalNumber::Ply(..))).count(), 8);
     }
 }

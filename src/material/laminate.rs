@@ -15,21 +15,58 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::dual::{Dual, Number};
+
 /// One unidirectional ply; moduli in its own axes (1 along the fibre, 2 across it).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ply {
+pub struct Ply<T = f64> {
     /// Modulus along the fibre E₁, Pa.
-    pub e1: f64,
+    pub e1: T,
     /// Modulus across the fibre E₂, Pa.
-    pub e2: f64,
+    pub e2: T,
     /// In-plane shear modulus G₁₂, Pa.
-    pub g12: f64,
+    pub g12: T,
     /// Major Poisson's ratio ν₁₂, dimensionless.
-    pub nu12: f64,
+    pub nu12: T,
     /// Thickness, m.
-    pub thickness: f64,
+    pub thickness: T,
     /// Angle between the fibre and the pipe's axis, rad.
-    pub angle: f64,
+    pub angle: T,
+}
+
+/// A number of the plies of a laminate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum PlyNumber {
+    /// E₁ of all plies, Pa.
+    E1,
+    /// E₂ of all plies, Pa.
+    E2,
+    /// G₁₂ of all plies, Pa.
+    G12,
+    /// ν₁₂ of all plies, dimensionless.
+    Nu12,
+    /// Angle of the ply of this number, from 0, rad.
+    Angle(usize),
+}
+
+impl PlyNumber {
+    /// Those of a laminate of so many plies.
+    pub fn all(plies: usize) -> impl Iterator<Item = PlyNumber> {
+        let moduli = [PlyNumber::E1, PlyNumber::E2, PlyNumber::G12, PlyNumber::Nu12];
+        moduli.into_iter().chain((0..plies).map(PlyNumber::Angle))
+    }
+
+    /// Its value, SI.
+    pub fn value_in(self, plies: &[Ply]) -> Option<f64> {
+        let first = plies.first()?;
+        match self {
+            PlyNumber::E1 => Some(first.e1),
+            PlyNumber::E2 => Some(first.e2),
+            PlyNumber::G12 => Some(first.g12),
+            PlyNumber::Nu12 => Some(first.nu12),
+            PlyNumber::Angle(ply) => plies.get(ply).map(|ply| ply.angle),
+        }
+    }
 }
 
 /// What a beam needs to know of a laminated wall.
@@ -47,15 +84,16 @@ pub struct Wall {
     pub thickness: f64,
 }
 
-impl Ply {
+impl<T: Number> Ply<T> {
     /// Reduced stiffness Q̄ in laminate axes, Pa, for (ε₁, ε₂, γ₁₂).
-    pub fn stiffness(&self) -> Matrix3<f64> {
+    pub fn stiffness(&self) -> Matrix3<T> {
         let nu21 = self.nu12 * self.e2 / self.e1;
-        let scale = 1.0 / (1.0 - self.nu12 * nu21);
+        let scale = T::one() / (T::one() - self.nu12 * nu21);
         let (q11, q22, q12, q66) = (self.e1 * scale, self.e2 * scale, self.nu12 * self.e2 * scale, self.g12);
         // Q̄ = Tᵀ Q T, T the transformation of engineering strains to ply axes (Jones Eq 2.78 and
         // 2.79)
-        let (s, c) = self.angle.sin_cos();
+        let (s, c) = (self.angle.sin(), self.angle.cos());
+        let zero = T::zero();
         let to_ply = Matrix3::new(
             c * c,
             s * s,
@@ -63,11 +101,11 @@ impl Ply {
             s * s,
             c * c,
             -s * c, //
-            -2.0 * s * c,
-            2.0 * s * c,
+            s * c * -2.0,
+            s * c * 2.0,
             c * c - s * s,
         );
-        let q = Matrix3::new(q11, q12, 0.0, q12, q22, 0.0, 0.0, 0.0, q66);
+        let q = Matrix3::new(q11, q12, zero, q12, q22, zero, zero, zero, q66);
         to_ply.transpose() * q * to_ply
     }
 }
@@ -103,6 +141,40 @@ pub fn wall(plies: &[Ply]) -> Option<Wall> {
         coupling: compliance[(0, 2)].abs() / (diagonal[0] * diagonal[2]).sqrt(),
         thickness,
     })
+}
+
+/// ∂E, ∂G (Pa) and ∂ν of the wall by one number of its plies (SI): with C = (A/h)⁻¹,
+/// ∂C = −C·∂(A/h)·C. The plies' thickness, one for all, changes none of them. A ν beyond what an
+/// isotropic material can have is taken for the nearest that it can, and does not change.
+///
+/// `None` as [`wall`], and for a ply that there is not.
+pub fn slopes(plies: &[Ply], number: PlyNumber) -> Option<[f64; 3]> {
+    let value_at = |k: usize| {
+        let ply = plies[k];
+        let own = |is_it: bool, x: f64| if is_it { Dual::from(x).derivative() } else { Dual::from(x) };
+        Ply {
+            e1: own(number == PlyNumber::E1, ply.e1),
+            e2: own(number == PlyNumber::E2, ply.e2),
+            g12: own(number == PlyNumber::G12, ply.g12),
+            nu12: own(number == PlyNumber::Nu12, ply.nu12),
+            thickness: Dual::from(ply.thickness),
+            angle: own(number == PlyNumber::Angle(k), ply.angle),
+        }
+    };
+    if matches!(number, PlyNumber::Angle(k) if k >= plies.len()) {
+        return None;
+    }
+    let thickness: f64 = plies.iter().map(|ply| ply.thickness).sum();
+    let membrane: Matrix3<Dual> =
+        (0..plies.len()).map(|k| value_at(k).stiffness() * value_at(k).thickness).sum();
+    let compliance = membrane.map(|entry| entry.re / thickness).try_inverse()?;
+    let change = -compliance * membrane.map(|entry| entry.eps / thickness) * compliance;
+    let (a11, a12, a66) = (compliance[(0, 0)], compliance[(0, 1)], compliance[(2, 2)]);
+    let (d11, d12, d66) = (change[(0, 0)], change[(0, 1)], change[(2, 2)]);
+    // E = 1/a₁₁, G = 1/a₆₆, ν = −a₁₂/a₁₁
+    let is_kept = (0.0..=0.5).contains(&(-a12 / a11));
+    let of_ratio = if is_kept { (a12 * d11 / a11 - d12) / a11 } else { 0.0 };
+    Some([-d11 / (a11 * a11), -d66 / (a66 * a66), of_ratio])
 }
 
 #[cfg(test)]
@@ -152,5 +224,44 @@ mod tests {
     #[test]
     fn nothing_comes_of_no_plies() {
         assert_eq!(wall(&[]), None);
+    }
+
+    /// Against central differences of fourth order, of a laminate that is not balanced.
+    #[test]
+    fn slopes_are_those_of_differences() {
+        let plies: Vec<Ply> = [0.0, 30.0, -45.0, 80.0].map(t300).to_vec();
+        let value_at = |number: PlyNumber, by: f64| {
+            let mut plies = plies.clone();
+            for (k, ply) in plies.iter_mut().enumerate() {
+                match number {
+                    PlyNumber::E1 => ply.e1 += by,
+                    PlyNumber::E2 => ply.e2 += by,
+                    PlyNumber::G12 => ply.g12 += by,
+                    PlyNumber::Nu12 => ply.nu12 += by,
+                    PlyNumber::Angle(own) if own == k => ply.angle += by,
+                    PlyNumber::Angle(_) => {}
+                }
+            }
+            let wall = wall(&plies).unwrap();
+            [wall.youngs_modulus, wall.shear_modulus, wall.poisson_ratio]
+        };
+        let mut numbers = 0;
+        for number in PlyNumber::all(plies.len()) {
+            numbers += 1;
+            let step = 1e-3 * number.value_in(&plies).unwrap().abs().max(0.1);
+            let [one, two, less, twice] = [1.0, 2.0, -1.0, -2.0].map(|k| value_at(number, k * step));
+            let found = slopes(&plies, number).unwrap();
+            for k in 0..3 {
+                let expected = (8.0 * (one[k] - less[k]) - (two[k] - twice[k])) / (12.0 * step);
+                let scale = expected.abs().max(1e-3 * value_at(number, 0.0)[k] / step);
+                assert!(
+                    (found[k] - expected).abs() < 1e-6 * scale,
+                    "{number:?} {k}: {} {expected}",
+                    found[k]
+                );
+            }
+        }
+        assert_eq!(numbers, 8);
+        assert!(slopes(&plies, PlyNumber::Angle(4)).is_none() && slopes(&[], PlyNumber::E1).is_none());
     }
 }

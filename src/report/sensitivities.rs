@@ -39,10 +39,17 @@ pub fn one_percent_more(rod: &Rod, slopes: &[(NominalNumber, Vec<f64>)], figures
     let mut rows = Vec::new();
     let is_one_tube = rod.pipe1.section == rod.pipe2.section;
     for (number, slopes) in slopes {
-        let Some(value) = rod.value_of(number).filter(|value| *value != 0.0) else { continue };
+        let value = match number {
+            NominalNumber::Ply(material, ply) => {
+                rod.plies().find(|(own, _)| own == material).and_then(|(_, plies)| ply.value_in(plies))
+            }
+            _ => rod.value_of(number),
+        };
+        let Some(value) = value.filter(|value| *value != 0.0) else { continue };
         let in_file = |value: f64| {
             let (key, si) = number.in_file();
-            format!("{} {}", significant(value / si, 4), unit(key)).trim_end().to_owned()
+            let sign = if value < 0.0 { "−" } else { "" };
+            format!("{sign}{} {}", significant(value.abs() / si, 4), unit(key)).trim_end().to_owned()
         };
         match number {
             NominalNumber::InnerDiameter(_) => {}

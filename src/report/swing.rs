@@ -56,10 +56,13 @@ pub fn section(
         label: format!("{} Hz", significant(mode.frequency, 4)),
         deflection_um: shape.iter().map(|u| (u / UM).into()).collect(),
     });
+    let mut drawn = drawing(rod);
+    // the shapes need the room; what the tubes are stands elsewhere
+    drawn.tubes.iter_mut().for_each(|tube| tube.label.clear());
     let figure = rod_shape(&RodShape {
         centreline_mm: centreline.iter().map(|p| (p / MM).into()).collect(),
         cases: cases.collect(),
-        ..drawing(rod)
+        ..drawn
     });
     let words = "Exact flexibilities, consistent mass of Timoshenko beams with rotary inertia; the robot is assumed rigid. \
          Readings within the settling time of a move are readings of a swing.";

@@ -13,6 +13,7 @@ pub use self::number::{Feature, NominalNumber, Part, SectionConstant};
 use super::{BendFlexibility, Joint, Pipe, Rod};
 use crate::dual::Number;
 use crate::material::Material;
+use crate::material::laminate::Ply;
 use crate::section::Section;
 
 /// A nominal number with its value.
@@ -197,7 +198,20 @@ impl<T: Number> Rod<T> {
             }
             NominalNumber::JointBending(name) => self.joint(name).map(|joint| joint.bending),
             NominalNumber::JointTorsion(name) => self.joint(name).map(|joint| joint.torsion),
+            // E, G and ν are what a beam knows of them
+            NominalNumber::Ply(..) => None,
         }
+    }
+
+    /// Laminates of the rod, by name, with their plies; each once.
+    pub fn plies(&self) -> impl Iterator<Item = (&str, &[Ply])> {
+        let mut known: Vec<&str> = Vec::new();
+        self.parts().into_iter().filter_map(move |(_, pipe)| {
+            let (name, plies) = (pipe.material.name.as_str(), pipe.material.plies.as_deref()?);
+            let is_new = !known.contains(&name);
+            known.push(name);
+            is_new.then_some((name, plies))
+        })
     }
 
     /// This rod with another `value` (SI) of one number, all else equal. A number that the rod does
@@ -281,6 +295,8 @@ impl<T: Number> Rod<T> {
                 let own = rod.joints.iter_mut().filter(|joint| joint.name == *name);
                 own.for_each(|joint| joint.torsion += value - nominal);
             }
+            // it has no value here, and so did not come so far
+            NominalNumber::Ply(..) => {}
         }
         let (before, after, length) = (self.places(), rod.places(), rod.length());
         let on_rod = |station: T| station.larger(T::zero()).smaller(length.larger(T::zero()));
@@ -362,7 +378,8 @@ impl Rod {
             | NominalNumber::BendFactor
             | NominalNumber::Mass(_)
             | NominalNumber::JointBending(_)
-            | NominalNumber::JointTorsion(_) => 0.0,
+            | NominalNumber::JointTorsion(_)
+            | NominalNumber::Ply(..) => 0.0,
         }
     }
 }

@@ -243,6 +243,7 @@ impl Check<'_> {
         let mut material = Material::anisotropic(name, wall.youngs_modulus, wall.shear_modulus, nu, density);
         // lay-up and fibre content are not better known where E/G happens to be an isotropic one
         material.standard_uncertainty = MaterialUncertainty::ANISOTROPIC;
+        material.plies = Some(plies.into());
         Ok(Checked { material, laminate_thickness: Some(wall.thickness) })
     }
 

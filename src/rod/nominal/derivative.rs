@@ -112,6 +112,7 @@ impl Pipe {
             yield_strength: material.yield_strength.map(lift),
             shear_coefficient_factor: lift(material.shear_coefficient_factor),
             standard_uncertainty: material.standard_uncertainty,
+            plies: material.plies.clone(),
         };
         Pipe { section, material }
     }

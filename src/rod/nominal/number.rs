@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::material::laminate::PlyNumber;
 use crate::units::{DEG, GPA, GRAM, MM, URAD_PER_NM};
 
 /// A number of the rod file.
@@ -65,6 +66,8 @@ pub enum NominalNumber {
     JointBending(String),
     /// Torsional compliance of the joint of this name, rad/(N·m).
     JointTorsion(String),
+    /// What E, G and ν of the laminate of this name are made of; the beam model knows those alone.
+    Ply(String, PlyNumber),
 }
 
 /// A part that has a section of its own.
@@ -139,6 +142,11 @@ impl NominalNumber {
             NominalNumber::BendFactor => "bend_flexibility",
             NominalNumber::JointBending(_) => "bending_urad_per_nm",
             NominalNumber::JointTorsion(_) => "torsion_urad_per_nm",
+            NominalNumber::Ply(_, PlyNumber::E1) => "ply_e1_gpa",
+            NominalNumber::Ply(_, PlyNumber::E2) => "ply_e2_gpa",
+            NominalNumber::Ply(_, PlyNumber::G12) => "ply_g12_gpa",
+            NominalNumber::Ply(_, PlyNumber::Nu12) => "ply_nu12",
+            NominalNumber::Ply(_, PlyNumber::Angle(_)) => "ply_angles_deg",
         }
     }
 
@@ -155,7 +163,8 @@ impl NominalNumber {
             NominalNumber::Section(_, SectionConstant::TorsionConstant) => ("j_mm4", MM * MM * MM * MM),
             _ => {
                 let key = self.key();
-                let units = [("_mm", MM), ("_g", GRAM), ("_deg", DEG), ("_urad_per_nm", URAD_PER_NM)];
+                let units =
+                    [("_mm", MM), ("_g", GRAM), ("_deg", DEG), ("_urad_per_nm", URAD_PER_NM), ("_gpa", GPA)];
                 let unit = units.into_iter().find(|(end, _)| key.ends_with(end));
                 (key, unit.map_or(1.0, |(_, si)| si))
             }
@@ -170,7 +179,8 @@ impl NominalNumber {
             | NominalNumber::ShearModulus(material)
             | NominalNumber::Density(material)
             | NominalNumber::ShearCoefficient(material)
-            | NominalNumber::PoissonRatio(material) => format!("material.{material}"),
+            | NominalNumber::PoissonRatio(material)
+            | NominalNumber::Ply(material, _) => format!("material.{material}"),
             NominalNumber::OuterDiameter(part)
             | NominalNumber::InnerDiameter(part)
             | NominalNumber::Width(part)
@@ -264,6 +274,13 @@ impl fmt::Display for NominalNumber {
             NominalNumber::Mass(name) => write!(f, "mass {name}"),
             NominalNumber::JointBending(name) => write!(f, "bending compliance of joint {name}"),
             NominalNumber::JointTorsion(name) => write!(f, "torsional compliance of joint {name}"),
+            NominalNumber::Ply(material, PlyNumber::E1) => write!(f, "E₁ of the plies of {material}"),
+            NominalNumber::Ply(material, PlyNumber::E2) => write!(f, "E₂ of the plies of {material}"),
+            NominalNumber::Ply(material, PlyNumber::G12) => write!(f, "G₁₂ of the plies of {material}"),
+            NominalNumber::Ply(material, PlyNumber::Nu12) => write!(f, "ν₁₂ of the plies of {material}"),
+            NominalNumber::Ply(material, PlyNumber::Angle(ply)) => {
+                write!(f, "angle of ply {} of {material}", ply + 1)
+            }
         }
     }
 }

@@ -161,9 +161,7 @@ pub fn slopes(plies: &[Ply], number: PlyNumber) -> Option<[f64; 3]> {
             angle: own(number == PlyNumber::Angle(k), ply.angle),
         }
     };
-    if matches!(number, PlyNumber::Angle(k) if k >= plies.len()) {
-        return None;
-    }
+    number.value_in(plies)?;
     let thickness: f64 = plies.iter().map(|ply| ply.thickness).sum();
     let membrane: Matrix3<Dual> =
         (0..plies.len()).map(|k| value_at(k).stiffness() * value_at(k).thickness).sum();

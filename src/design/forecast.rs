@@ -211,8 +211,8 @@ impl<'c> Forecaster<'c> {
     /// ```
     ///
     /// # Errors
-    /// [`Error::NotApplicable`] for a mode that the campaign's files do not allow; what the beam
-    /// model refuses.
+    /// [`crate::Error::NotApplicable`] for a mode that the campaign's files do not allow; what the
+    /// beam model refuses.
     pub fn forecast(&self, poses: &[(usize, Vec<f64>)], mode: Mode) -> Result<Forecast> {
         let loads = rod::Loads::new(self.campaign, mode)?;
         let (setup, free) = (self.setup.clone(), &self.free);

@@ -93,9 +93,9 @@ pub static ROW_MISTAKE: Effect = Effect {
 /// A frame read in another convention, or the other way round.
 pub static FRAME_MISTAKE: Effect = Effect {
     name: "frame_mistake",
-    summary: "a frame of base, tool or clamp is given in another convention, inverted, or in another frame",
+    summary: "a frame of base, tool or clamp, or gravity, is given in another convention, inverted, or in another frame",
     formula: "another order of roll, pitch and yaw; the inverse; axes exchanged",
-    needs: "a stated base, a stated tool or rod, clamps",
+    needs: "a stated base, a stated tool or rod, clamps; for gravity a robot file with masses",
     cause: "a frame given in another way",
     cause_at: |location| at("a frame given in another way", location),
     ..NONE

@@ -101,6 +101,10 @@ impl Mended {
         }
         finding.rivals = rivals;
         finding.next = finding.direct_check(&finding.rivals.iter().collect::<Vec<_>>());
+        // a force and gravity are no joints that could be moved
+        if matches!(&found.step, SearchStep::Move(number) if search.moves[*number].is_load()) {
+            finding.next = None;
+        }
     }
 
     /// What happened to a single row, or to a few.

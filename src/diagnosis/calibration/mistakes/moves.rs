@@ -12,6 +12,7 @@ pub(super) mod rods;
 use nalgebra::Vector3;
 
 pub(super) use self::conventions::turn;
+use super::super::effects::mistakes::SIGN_MISTAKE;
 use super::draft::{Draft, DraftChange};
 use super::names::column;
 use crate::calibration::campaign::Campaign;
@@ -40,6 +41,11 @@ pub(super) struct PossibleMistake {
 }
 
 impl PossibleMistake {
+    /// Whether a force or gravity changes its sign.
+    pub fn is_load(&self) -> bool {
+        self.effect == &SIGN_MISTAKE && matches!(self.change, DraftChange::Body(..))
+    }
+
     /// What explains poses as well, at such odds.
     pub fn with_odds(&self, odds: f64) -> (&'static Effect, Key, f64) {
         (self.effect, self.location.clone(), odds)

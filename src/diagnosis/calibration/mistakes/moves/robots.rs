@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::super::super::effects::mistakes::{TYPING_MISTAKE, UNIT_MISTAKE};
+use super::super::super::effects::mistakes::{FRAME_MISTAKE, SIGN_MISTAKE, TYPING_MISTAKE, UNIT_MISTAKE};
 use super::super::draft::DraftChange;
-use super::{List, Reading, UNUSUAL, exact};
+use super::{List, RARE, Reading, UNUSUAL, exact};
 use crate::calibration::campaign::Campaign;
 use crate::inference::Key;
 use crate::robot::{Robot, is_urdf};
@@ -68,8 +68,7 @@ fn radians(robot: &Robot) -> Reading {
     }
 }
 
-/// Gravity in another unit, or none. Along another axis of {0} it is as large, and no reading of
-/// the file: a clamp that stands aside was taken for it.
+/// Gravity in another unit, along another axis of {0}, or none.
 fn gravity(campaign: &Campaign) -> Vec<Reading> {
     let given = campaign.robot.gravity;
     let with = |gravity: Vector3<f64>| Robot { gravity, ..campaign.robot.clone() };
@@ -93,6 +92,33 @@ fn gravity(campaign: &Campaign) -> Vec<Reading> {
         })
     };
     let mut all: Vec<Reading> = units.into_iter().filter_map(meant).collect();
+    if given != Vector3::zeros() {
+        all.push(Reading {
+            robot: with(-given),
+            effect: &SIGN_MISTAKE,
+            key: GRAVITY,
+            log_prior: UNUSUAL,
+            estimates: Vec::new(),
+            cure: format!("Multiply {GRAVITY} by −1"),
+            why: "it pulls the other way",
+        });
+    }
+    let axis = given.iamax();
+    let is_along_axis = given.norm() > 0.0 && given[axis].abs() == given.norm();
+    let aside = (0..3).filter(|&other| is_along_axis && other != axis);
+    for (other, sign) in aside.flat_map(|other| [(other, -1.0), (other, 1.0)]) {
+        let mut gravity = Vector3::zeros();
+        gravity[other] = sign * given.norm();
+        all.push(Reading {
+            robot: with(gravity),
+            effect: &FRAME_MISTAKE,
+            key: GRAVITY,
+            log_prior: RARE,
+            estimates: Vec::new(),
+            cure: format!("Write {GRAVITY} = [{:?}, {:?}, {:?}]", gravity.x, gravity.y, gravity.z),
+            why: "gravity pulls along that axis of the base",
+        });
+    }
     if given == Vector3::zeros() {
         all.push(Reading {
             robot: with(Vector3::new(0.0, 0.0, -STANDARD_GRAVITY)),

@@ -102,12 +102,14 @@ fn a_contact_force_in_another_unit() {
 #[test]
 fn a_robot_file_in_other_units() {
     type Change = fn(&mut Robot);
-    let cases: [(Change, &str); 7] = [
+    let cases: [(Change, &str); 9] = [
         (|robot| scaled(robot, 1e3), "Multiply a_mm and d_mm of all joints by 1000"),
         (|robot| scaled(robot, 25.4), "Multiply a_mm and d_mm of all joints by 25.4"),
         (|robot| robot.gravity /= 9.80665, "Multiply gravity_m_s2 by 9.80665"),
         (|robot| robot.gravity *= 1e3, "Multiply gravity_m_s2 by 0.001"),
         (|robot| robot.gravity /= 0.3048, "Multiply gravity_m_s2 by 0.3048"),
+        (|robot| robot.gravity *= -1.0, "Multiply gravity_m_s2 by −1"),
+        (|robot| robot.gravity = Vector3::x() * 9.80665, "Write gravity_m_s2 = [0.0, 0.0, -9.80665]"),
         (|robot| robot.gravity = Vector3::zeros(), "Write gravity_m_s2 = [0.0, 0.0, -9.80665]"),
         (in_radians, "Multiply theta_offset_deg, alpha_deg and beta_deg of all joints by 57.2958"),
     ];

@@ -229,7 +229,9 @@ fn one_of_three_clamps_beside_its_place_is_no_mistake() {
     let right = tx90();
     let clamp_of = |campaign: &Campaign, row: usize| campaign.measurements.rows[row].group;
     let rows: Vec<usize> = (0..right.measurements.len()).filter(|&row| clamp_of(&right, row) < 3).collect();
-    let three = Campaign { measurements: right.measurements.subset(&rows), ..right };
+    // a robot file of one's own may have numbers in another unit, or gravity the other way round
+    let robot_file = "tx90.toml".to_owned();
+    let three = Campaign { measurements: right.measurements.subset(&rows), robot_file, ..right };
     // parts of the rows, parts, parts, then all of them
     for (clamp, by) in
         [(0, [0.9, 0.0, 0.0]), (0, [0.0, 1.5, 0.0]), (1, [0.4, 0.0, 0.0]), (1, [0.0, 0.9, 0.0])]

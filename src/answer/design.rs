@@ -41,7 +41,7 @@ impl DesignRod<'_> {
     }
 }
 
-/// The rods that none betters, as rod files too; with status 1 where no rod keeps all limits.
+/// The Pareto front of rods, as rod files too; with status 1 where no rod keeps all limits.
 ///
 /// # Errors
 /// As [`Study::of_found`], [`Study::with_refined`] and [`for_robot`].

@@ -18,7 +18,7 @@ use super::progress::Progress;
 
 #[derive(Debug, Subcommand)]
 pub enum Design {
-    /// The rods that none betters: lengths, angles, bends and tubes to choose from, limits to keep.
+    /// The Pareto front of rods: lengths, angles, bends and tubes to choose from, limits to keep.
     Rod(DesignRod),
     /// The poses that a calibration should measure, and how accurate the robot will be.
     Poses(poses::DesignPoses),

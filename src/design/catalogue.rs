@@ -1,6 +1,6 @@
 //! Tubes to choose from: the built-in catalogue, or a table of one's own.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use crate::delimited::{Row, Table, nearest_name};
 use crate::error::{Error, Result};
@@ -84,9 +84,10 @@ pub(super) fn read(file: &str, text: &str, materials: &BTreeMap<String, Material
         }
     }
     let mut tubes: Vec<Tube> = Vec::new();
+    let mut names = HashSet::new();
     for row in table.rows() {
         let tube = tube(&row, materials)?;
-        if tubes.iter().any(|known| known.name == tube.name) {
+        if !names.insert(tube.name.clone()) {
             return Err(row.error("name", "a name of its own for each tube".into(), None));
         }
         tubes.push(tube);

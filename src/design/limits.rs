@@ -74,6 +74,8 @@ pub enum Impossible {
     SleeveNotOnOnePipe,
     /// The wall of a sleeve would be where that of a tube is.
     SleeveInTheWay,
+    /// A sleeve would be too far from any wall for a bond.
+    SleeveLoose,
     /// The corner takes more of a pipe than there is: one pipe would end within the other, or
     /// within the flange.
     CornerDoesNotFit,
@@ -87,11 +89,12 @@ impl Impossible {
         Impossible::StationBeyondTip,
         Impossible::SleeveNotOnOnePipe,
         Impossible::SleeveInTheWay,
+        Impossible::SleeveLoose,
         Impossible::CornerDoesNotFit,
     ];
 
     /// Number of them.
-    pub const COUNT: usize = 6;
+    pub const COUNT: usize = 7;
 
     /// Its name in the JSON.
     pub fn key(self) -> &'static str {
@@ -101,6 +104,7 @@ impl Impossible {
             Impossible::StationBeyondTip => "station_beyond_tip",
             Impossible::SleeveNotOnOnePipe => "sleeve_not_on_one_pipe",
             Impossible::SleeveInTheWay => "sleeve_in_the_way",
+            Impossible::SleeveLoose => "sleeve_loose",
             Impossible::CornerDoesNotFit => "corner_does_not_fit",
         }
     }
@@ -113,6 +117,7 @@ impl Impossible {
             Impossible::StationBeyondTip => "a mass or a joint would sit beyond the tip",
             Impossible::SleeveNotOnOnePipe => "a sleeve would not lie on one straight pipe",
             Impossible::SleeveInTheWay => "a sleeve fits neither over nor in the tube",
+            Impossible::SleeveLoose => "a sleeve would be more than a millimetre away from the tube",
             Impossible::CornerDoesNotFit => {
                 "a pipe is too short for the corner: one would end within the other"
             }

@@ -183,12 +183,13 @@ pub fn refine(
     Ok(Some(refined))
 }
 
-/// The best end and the next best ones of other lengths.
+/// The best end and the next best ones of other lengths or other sleeves.
 fn shapes<'e>(ends: &'e [End], best: &'e End, gains: &[f64], lengths: &[Variable]) -> Vec<&'e Rod> {
     let mut order: Vec<usize> = (0..ends.len()).filter(|&k| gains[k].is_finite()).collect();
     order.sort_by(|&a, &b| gains[b].total_cmp(&gains[a]));
     let is_other = |one: &Rod, other: &Rod| {
-        lengths.iter().any(|length| (length.value(one) / length.value(other)).ln().abs() > OTHER_SHAPE)
+        let by = |length: &Variable| (length.value(one) / length.value(other)).ln().abs();
+        one.sleeves != other.sleeves || lengths.iter().any(|length| by(length) > OTHER_SHAPE)
     };
     let mut shapes = vec![&best.rod];
     for k in order {

@@ -9,7 +9,7 @@ use super::figure::{Design, Figure, Figures};
 use super::front::Front;
 use super::limits::{Impossible, Limit};
 use super::nearest::Nearest;
-use super::space::DesignSpace;
+use super::space::{Choice, DesignSpace};
 use crate::beam::TipSolver;
 use crate::error::{Error, Result};
 use crate::parallel::in_parallel;
@@ -251,7 +251,7 @@ impl<'s> Search<'s> {
 struct Task<'s> {
     space: &'s DesignSpace,
     solver: TipSolver,
-    rod: Option<(Rod, [usize; 2])>,
+    rod: Option<(Rod, Choice)>,
     is_frequency_a_goal: bool,
 }
 
@@ -271,14 +271,16 @@ impl<'s> Task<'s> {
 
     fn look_at(&mut self, index: u64, sum: &mut Sum) -> Result<()> {
         let (space, choice) = (self.space, self.space.choice(index));
-        let of_tubes = |tubes: [usize; 2]| {
-            let [first, second] = tubes.map(|tube| space.tubes[tube].pipe.clone());
+        let built = || {
+            let [first, second] = choice.tubes.map(|tube| space.tubes[tube].pipe.clone());
             let mut rod = Rod::new("", choice.l1, choice.l2, first).with_pipe2(second);
-            space.furnish(&mut rod);
+            space.furnish(&mut rod, &choice);
             rod
         };
-        let known = self.rod.take().filter(|(_, tubes)| *tubes == choice.tubes);
-        let (mut rod, tubes) = known.unwrap_or_else(|| (of_tubes(choice.tubes), choice.tubes));
+        let is_of_same_parts =
+            |known: &Choice| known.tubes == choice.tubes && known.sleeves == choice.sleeves;
+        let known = self.rod.take().filter(|(_, known)| is_of_same_parts(known));
+        let mut rod = known.map_or_else(built, |(rod, _)| rod);
         space.shape(&choice, &mut rod);
         let judged = match space.possible(&rod) {
             Ok(()) => self.judge(index, &rod, sum),
@@ -287,7 +289,7 @@ impl<'s> Task<'s> {
                 Ok(())
             }
         };
-        self.rod = Some((rod, tubes));
+        self.rod = Some((rod, choice));
         judged
     }
 

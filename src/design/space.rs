@@ -50,6 +50,8 @@ pub struct DesignSpace {
     pub joints: Vec<Joint>,
     #[allow(missing_docs)]
     pub sleeves: Vec<Sleeve>,
+    /// What a rod may have or not: each selection of them is a combination.
+    pub optional_sleeves: Vec<Sleeve>,
     /// What must hold.
     pub limits: Vec<Limit>,
     /// What counts.
@@ -61,6 +63,8 @@ pub struct DesignSpace {
 /// One combination.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Choice {
+    /// Of the optional sleeves, bit k for the k-th.
+    pub sleeves: u32,
     pub tubes: [usize; 2],
     pub gamma: f64,
     pub bend_radius: f64,
@@ -75,8 +79,14 @@ impl DesignSpace {
         let tubes = self.tubes.len() as u128;
         let others = [&self.gamma, &self.bend_radius, &self.tip_mass, &self.l1, &self.l2];
         let all = others.iter().map(|values| values.len() as u128).product::<u128>()
-            * if self.is_one_tube { tubes } else { tubes * tubes };
+            * if self.is_one_tube { tubes } else { tubes * tubes }
+            * self.selections() as u128;
         u64::try_from(all).unwrap_or(u64::MAX)
+    }
+
+    /// Selections of the optional sleeves; the reader takes few enough of them.
+    fn selections(&self) -> usize {
+        1 << self.optional_sleeves.len()
     }
 
     /// The error of more rods than a search takes: how many, how long they would take, and where
@@ -95,6 +105,7 @@ impl DesignSpace {
             ("bend_radius_mm", self.bend_radius.len()),
             ("mass_g", self.tip_mass.len()),
             ("tubes", if self.is_one_tube { self.tubes.len() } else { self.tubes.len().pow(2) }),
+            ("selections of sleeves", self.selections()),
         ];
         let counts = counts.iter().filter(|(_, count)| *count > 1);
         let counts: Vec<String> = counts.map(|(key, count)| format!("{count} {key}")).collect();
@@ -125,7 +136,8 @@ impl DesignSpace {
         let gamma = self.gamma[next(self.gamma.len())];
         let second = next(self.tubes.len());
         let first = if self.is_one_tube { second } else { next(self.tubes.len()) };
-        Choice { tubes: [first, second], gamma, bend_radius, tip_mass, l1, l2 }
+        let sleeves = next(self.selections()) as u32;
+        Choice { sleeves, tubes: [first, second], gamma, bend_radius, tip_mass, l1, l2 }
     }
 
     /// The rod of a combination, or why it is none.
@@ -136,7 +148,7 @@ impl DesignSpace {
         let choice = self.choice(index);
         let [first, second] = choice.tubes.map(|tube| self.tubes[tube].pipe.clone());
         let mut rod = Rod::new(format!("design {index}"), choice.l1, choice.l2, first).with_pipe2(second);
-        self.furnish(&mut rod);
+        self.furnish(&mut rod, &choice);
         self.shape(&choice, &mut rod);
         self.possible(&rod)?;
         Ok(rod)
@@ -149,11 +161,14 @@ impl DesignSpace {
         if first == second { vec![name(first)] } else { vec![name(first), name(second)] }
     }
 
-    /// Puts on `rod` what sits on every one.
-    pub(super) fn furnish(&self, rod: &mut Rod) {
+    /// Puts on `rod` what sits on every one, and the optional sleeves of a choice.
+    pub(super) fn furnish(&self, rod: &mut Rod, choice: &Choice) {
         rod.masses.clone_from(&self.masses);
         rod.joints.clone_from(&self.joints);
         rod.sleeves.clone_from(&self.sleeves);
+        let optional = self.optional_sleeves.iter().enumerate();
+        let chosen = optional.filter(|(k, _)| choice.sleeves >> k & 1 == 1);
+        rod.sleeves.extend(chosen.map(|(_, sleeve)| sleeve.clone()));
     }
 
     /// Gives `rod` the shape of a choice; its tubes, and what sits on it, stay.
@@ -185,6 +200,7 @@ impl DesignSpace {
                 None => Ok(()),
                 Some(Misfit::Stretch) => Err(Impossible::SleeveNotOnOnePipe),
                 Some(Misfit::Wall) => Err(Impossible::SleeveInTheWay),
+                Some(Misfit::Loose) => Err(Impossible::SleeveLoose),
             },
         }
     }

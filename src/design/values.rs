@@ -9,7 +9,7 @@ use crate::toml_text::{Number, TomlText};
 use crate::units::significant;
 
 /// Most values of one key.
-pub const MOST_VALUES: usize = 100_000;
+pub const MOST_VALUES: usize = crate::limits::DESIGN_VALUES;
 /// Share of a step by which rounding may miss the end of a range.
 const SLACK: f64 = 1e-9;
 

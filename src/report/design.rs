@@ -221,8 +221,8 @@ pub fn headline(study: &Study) -> String {
     });
     let spans: Vec<String> = spans.collect();
     let front = match found.front.len() {
-        1 => "one of them is bettered by none".to_owned(),
-        count => format!("{count} of them are bettered by none"),
+        1 => "one of them is as good as any other in every goal".to_owned(),
+        count => format!("{count} of them form the Pareto front"),
     };
     format!("Of {all} {} all limits, and {front}: {}.", verb(found.feasible), spans.join(", "))
 }
@@ -310,7 +310,7 @@ fn front(study: &Study) -> Vec<Block> {
 fn front_table(study: &Study) -> Table {
     let figures = columns(study);
     let mut heads = vec![Column::text("design"), Column::text("tube")];
-    heads.extend(shape_columns());
+    heads.extend(shape_columns(study));
     heads.extend(figures.iter().map(|figure| {
         let (name, unit) = figure.name_and_unit();
         Column::number(name, unit)
@@ -322,14 +322,14 @@ fn front_table(study: &Study) -> Table {
     let mut table = Table::new("front", caption, heads);
     for shown in &study.shown {
         let mut cells = vec![(shown.place + 1).to_string(), shown.tubes.join(" + ")];
-        cells.extend(shape_cells(&shown.rod));
+        cells.extend(shape_cells(study, &shown.rod));
         cells.extend(figures.iter().map(|figure| known(shown, *figure)));
         cells.push(places(&shown.indistinguishable));
         table.row(cells);
     }
     if let Some(base) = &study.base {
         let mut cells = vec![format!("rod {}", base.rod.name), String::new()];
-        cells.extend(shape_cells(&base.rod));
+        cells.extend(shape_cells(study, &base.rod));
         let value =
             |figure: &Figure| base.figures.get(*figure).map_or("–".to_owned(), |v| significant(v, DIGITS));
         cells.extend(figures.iter().map(value));
@@ -363,7 +363,7 @@ fn nearest(study: &Study) -> Vec<Block> {
         Column::in_row_unit("needed"),
         Column::units(),
     ];
-    heads.extend(shape_columns());
+    heads.extend(shape_columns(study));
     let caption =
         "Limits that stand in the way alone: with what is needed here, the rod beside it keeps all others.";
     let mut table = Table::new("relax", caption, heads);
@@ -375,7 +375,7 @@ fn nearest(study: &Study) -> Vec<Block> {
             relaxed.limit.figure.name_and_unit().1.to_owned(),
         ];
         if let Ok(rod) = study.space.rod(relaxed.design.index) {
-            cells.extend(shape_cells(&rod));
+            cells.extend(shape_cells(study, &rod));
         }
         table.row(cells);
     }
@@ -390,7 +390,7 @@ fn nearest(study: &Study) -> Vec<Block> {
             Column::in_row_unit("this rod has"),
             Column::units(),
         ];
-        heads.extend(shape_columns());
+        heads.extend(shape_columns(study));
         let caption = format!(
             "The design whose worst limit is broken by the smallest share, {} %: tube {}.",
             significant(100.0 * worst, 2),
@@ -405,7 +405,7 @@ fn nearest(study: &Study) -> Vec<Block> {
                 limit.figure.name_and_unit().1.to_owned(),
             ];
             if let Ok(rod) = study.space.rod(design.index) {
-                cells.extend(shape_cells(&rod));
+                cells.extend(shape_cells(study, &rod));
             }
             table.row(cells);
         }

@@ -187,6 +187,11 @@ impl Check<'_> {
             let sleeve = self.sleeve(sleeve, &rod, &materials)?;
             rod.sleeves.push(sleeve);
         }
+        let loose = rod.sleeves.iter().filter_map(|sleeve| {
+            let gap = 0.5 * rod.gap(sleeve)?;
+            Some(Warning::LooseSleeve { sleeve: sleeve.name.clone(), gap })
+        });
+        self.warnings.extend(loose);
         self.laws(&raw.law, &mut rod)?;
         Ok(rod)
     }
@@ -338,6 +343,20 @@ torsion_urad_per_nm = 3.0
         let more = SLEEVE.replace("= 20", "= 12").replace("= 16", "= 0");
         let over = SLEEVE.replace("= 20", "= 24").replace("= 16", "= 20");
         assert_eq!(read(&format!("{EXAMPLE}{SLEEVE}{more}{over}")).sleeves.len(), 3);
+    }
+
+    #[test]
+    fn a_sleeve_far_from_any_wall_is_warned_about() {
+        let warned = |text: &str| {
+            let rod = read(&format!("{EXAMPLE}{text}"));
+            rod.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+        };
+        assert_eq!(warned(SLEEVE), "");
+        let wide = SLEEVE.replace("= 20", "= 30").replace("= 16", "= 26");
+        assert!(warned(&wide).starts_with("sleeve \"collar\" is 5.0 mm away from the nearest wall"));
+        // one over another that is bonded is bonded
+        let between = SLEEVE.replace("= 20", "= 25");
+        assert_eq!(warned(&format!("{between}{wide}")), "");
     }
 
     #[test]

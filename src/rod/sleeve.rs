@@ -15,6 +15,8 @@ const ROUNDED: f64 = 1e-6;
 
 /// How far a press fit may overlap, m, on the diameter.
 const PRESS_FIT: f64 = 0.1e-3;
+/// What a bond fills, m, on the diameter: adhesives bear up to about a millimetre of thickness.
+const MOST_GAP: f64 = 2e-3;
 
 impl<T: Number> Rod<T> {
     /// The pipe at a station, m; at the corner or an end of the bend that beyond it.
@@ -82,6 +84,8 @@ pub enum Misfit {
     Stretch,
     /// Its wall would be where that of the pipe, or of a sleeve before it, is.
     Wall,
+    /// It is nowhere near the wall of the pipe, nor of another sleeve: nothing bonds it.
+    Loose,
 }
 
 impl Rod {
@@ -93,12 +97,22 @@ impl Rod {
                 return Some(Misfit::Stretch);
             }
             let walls = self.walls(&self.sleeves[..k], *from, *to);
-            walls
-                .map(|(_, section)| section)
-                .any(|other| is_through(&pipe.section, other))
-                .then_some(Misfit::Wall)
+            match walls.map(|(_, section)| section).any(|other| is_through(&pipe.section, other)) {
+                true => Some(Misfit::Wall),
+                false => self.gap(sleeve).map(|_| Misfit::Loose),
+            }
         };
         self.sleeves.iter().enumerate().find_map(misfit)
+    }
+
+    /// The gap (m, on the diameter) between a sleeve of this rod and the wall that is nearest to
+    /// it, where a bond does not fill it. Of rounds.
+    pub(super) fn gap(&self, sleeve: &Sleeve) -> Option<f64> {
+        let walls = self.walls(&self.sleeves, sleeve.from, sleeve.to);
+        let others = walls.filter(|(other, _)| other.is_none_or(|other| !std::ptr::eq(other, sleeve)));
+        let gaps = others.map(|(_, other)| gap(&sleeve.pipe.section, other).unwrap_or(0.0));
+        let least = gaps.fold(f64::INFINITY, f64::min);
+        (least > MOST_GAP).then_some(least)
     }
 
     fn holds(&self, from: f64, to: f64) -> bool {
@@ -154,6 +168,12 @@ impl Rod {
 
 fn is_on_first(rod: &Rod, from: f64, to: f64) -> bool {
     0.5 * (from + to) < rod.bend_start()
+}
+
+/// Between two tubes of which one is in the other, on the diameter, m.
+fn gap(one: &Section, other: &Section) -> Option<f64> {
+    let (a, b) = (one.as_round()?, other.as_round()?);
+    Some((a.inner_diameter - b.outer_diameter).max(b.inner_diameter - a.outer_diameter))
 }
 
 /// True where two tubes would have to go through one another.

@@ -65,6 +65,13 @@ pub enum Warning {
         /// True where the load that hangs now is all it takes.
         is_static: bool,
     },
+    /// A sleeve that is nowhere near another wall.
+    LooseSleeve {
+        /// Its name.
+        sleeve: String,
+        /// To the nearest wall, on the radius, m.
+        gap: f64,
+    },
     /// Young's and shear modulus leave the isotropic range and Poisson's ratio is not stated: it is
     /// taken as [`crate::material::TYPICAL_POISSON_RATIO`].
     Anisotropic {
@@ -112,6 +119,12 @@ impl fmt::Display for Warning {
             Warning::LawOfRig { law, is_static: false } => write!(
                 f,
                 "the law {law} follows what went before: `diagnose rig` uses it, and nothing else does"
+            ),
+            Warning::LooseSleeve { sleeve, gap } => write!(
+                f,
+                "sleeve \"{sleeve}\" is {:.1} mm away from the nearest wall: it is taken as bonded to the rod all along, \
+                 which no adhesive is at that thickness; check its diameters",
+                gap / MM
             ),
             Warning::Anisotropic { material, ratio } => write!(
                 f,

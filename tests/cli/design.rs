@@ -1,4 +1,4 @@
-//! Rods that none betters, as a designer asks for them.
+//! The Pareto front of rods, as a designer asks for them.
 
 use super::Sandbox;
 

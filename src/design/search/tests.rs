@@ -45,7 +45,7 @@ from_mm = 120
 to_mm = 180
 material = \"steel\"
 outer_diameter_mm = 39
-inner_diameter_mm = 32
+inner_diameter_mm = 31
 ";
 
 #[test]
@@ -79,6 +79,39 @@ fn a_sleeve_sits_on_every_rod_that_can_hold_it() {
         compared += 1;
     }
     assert!(compared > 20, "{compared}");
+}
+
+/// Every selection of two of them is looked at, each with what always sits there before it.
+#[test]
+fn an_optional_sleeve_is_there_or_not() {
+    // over the aluminium tube
+    let collar = SLEEVE.replace("= 39", "= 45").replace("= 31", "= 41");
+    let optional = collar.replace("[[sleeve]]", "[[optional_sleeve]]");
+    // in its bore
+    let stub = optional.replace("collar", "stub").replace("= 120", "= 0").replace("= 180", "= 90");
+    let stub = stub.replace("steel", "carbon-wrapped").replace("= 45", "= 36").replace("= 41", "= 33");
+    let (bare, chosen) = (space(TEXT), space(&format!("{TEXT}{optional}{stub}")));
+    assert_eq!(chosen.combinations(), 4 * bare.combinations());
+    let front = |space: &DesignSpace| search(space, Searched::All, &|_| {}).unwrap().front;
+    for (selection, names) in
+        [vec![], vec!["collar"], vec!["stub"], vec!["collar", "stub"]].iter().enumerate()
+    {
+        let one = bare.combinations();
+        let rods = (0..one).filter_map(|index| chosen.rod(selection as u64 * one + index).ok());
+        let rods: Vec<Rod> = rods.collect();
+        assert!(rods.len() > 100, "{names:?}");
+        let named = |rod: &Rod| rod.sleeves.iter().map(|sleeve| sleeve.name.clone()).collect::<Vec<_>>();
+        assert!(rods.iter().all(|rod| named(rod) == *names));
+    }
+    looked_at_one_by_one(&chosen);
+    // a stub is worth its weight on some rods and not on others
+    let with = |design: &Design| !chosen.rod(design.index).unwrap().sleeves.is_empty();
+    let (sleeved, all) = (front(&chosen).iter().filter(|design| with(design)).count(), front(&chosen).len());
+    assert!(0 < sleeved && sleeved < all, "{sleeved} of {all}");
+    // on every rod they are those that are not optional
+    let always = space(&format!("{TEXT}{collar}"));
+    let index = chosen.combinations() / 4 + 1000;
+    assert_eq!(chosen.rod(index).ok().map(|rod| rod.sleeves), always.rod(1000).ok().map(|rod| rod.sleeves));
 }
 
 /// All combinations one by one, without anything that saves time; gives why some are no rods.

@@ -35,6 +35,8 @@ struct RawSpace {
     #[serde(default)]
     sleeve: Vec<Spanned<RawSleeve>>,
     #[serde(default)]
+    optional_sleeve: Vec<Spanned<RawSleeve>>,
+    #[serde(default)]
     constraints: RawLimits,
     objectives: Spanned<RawGoals>,
 }
@@ -166,10 +168,13 @@ impl DesignSpace {
         let tip_mass = range("tip.mass_g", raw.tip.as_ref().map(|tip| &tip.mass_g), GRAM, Bounds::MASS, 0.0)?;
         let flexibility =
             geometry.bend_flexibility.as_ref().map(|raw| check.bend_flexibility(raw)).transpose()?;
-        for (count, what) in
-            [(raw.mass.len(), "masses"), (raw.joint.len(), "joints"), (raw.sleeve.len(), "sleeves")]
-        {
-            most::check(file, count, most::ROD_PARTS, what)?;
+        for (count, limit, what) in [
+            (raw.mass.len(), most::ROD_PARTS, "masses"),
+            (raw.joint.len(), most::ROD_PARTS, "joints"),
+            (raw.sleeve.len(), most::ROD_PARTS, "sleeves"),
+            (raw.optional_sleeve.len(), most::OPTIONAL_SLEEVES, "optional sleeves"),
+        ] {
+            most::check(file, count, limit, what)?;
         }
         // which rods are long enough, and hold the sleeves, is found out one by one
         let mut joints: Vec<Joint> = Vec::new();
@@ -178,8 +183,10 @@ impl DesignSpace {
         }
         let masses = raw.mass.iter().map(|mass| check.lumped_mass(mass, f64::INFINITY));
         let masses: Vec<LumpedMass> = masses.collect::<Result<_>>()?;
-        let sleeves = raw.sleeve.iter().map(|sleeve| check.sleeve_apart(sleeve, &materials));
-        let sleeves: Vec<Sleeve> = sleeves.collect::<Result<_>>()?;
+        let mut sleeves_of = |raw: &[Spanned<RawSleeve>]| {
+            raw.iter().map(|sleeve| check.sleeve_apart(sleeve, &materials)).collect::<Result<Vec<Sleeve>>>()
+        };
+        let (sleeves, optional_sleeves) = (sleeves_of(&raw.sleeve)?, sleeves_of(&raw.optional_sleeve)?);
         let keys = [
             Some(&geometry.l1_mm),
             Some(&geometry.l2_mm),
@@ -211,6 +218,7 @@ impl DesignSpace {
             masses,
             joints,
             sleeves,
+            optional_sleeves,
             limits: limits(&toml, &raw.constraints)?,
             goals: goals(&toml, &raw.objectives)?,
             warnings: Vec::new(),

@@ -26,23 +26,42 @@ pub fn columns(study: &Study) -> Vec<Figure> {
     figures
 }
 
-/// Lengths, angle, bend and tip.
-pub fn shape_columns() -> Vec<Column> {
-    vec![
+/// Lengths, angle, bend and tip; the sleeves, where rods may differ in them.
+pub fn shape_columns(study: &Study) -> Vec<Column> {
+    let mut columns = vec![
         Column::number("L1", "mm"),
         Column::number("L2", "mm"),
         Column::number("γ", "°"),
         Column::number("R", "mm"),
         Column::number("tip", "g"),
-    ]
+    ];
+    if are_sleeves_optional(study) {
+        columns.push(Column::text("sleeves"));
+    }
+    columns
+}
+
+/// Whether rods may differ in their sleeves.
+pub fn are_sleeves_optional(study: &Study) -> bool {
+    !study.space.optional_sleeves.is_empty()
 }
 
 /// What stands below [`shape_columns`].
-pub fn shape_cells(rod: &Rod) -> Vec<String> {
+pub fn shape_cells(study: &Study, rod: &Rod) -> Vec<String> {
     // as a drawing has them: no zeros behind, and none of the rounding of units
-    [rod.l1 / MM, rod.l2 / MM, rod.gamma / DEG, rod.bend_radius / MM, rod.tip_mass / GRAM]
+    let mut cells = [rod.l1 / MM, rod.l2 / MM, rod.gamma / DEG, rod.bend_radius / MM, rod.tip_mass / GRAM]
         .map(|value| ((value * 1e3).round() / 1e3).to_string())
-        .to_vec()
+        .to_vec();
+    if are_sleeves_optional(study) {
+        cells.push(sleeves_of(rod));
+    }
+    cells
+}
+
+/// `collar + stub`, or `none`.
+pub fn sleeves_of(rod: &Rod) -> String {
+    let names: Vec<&str> = rod.sleeves.iter().map(|sleeve| sleeve.name.as_str()).collect();
+    if names.is_empty() { "none".to_owned() } else { names.join(" + ") }
 }
 
 /// What is known of the design at a place of the front; they stand in its order.

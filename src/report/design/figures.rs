@@ -30,7 +30,7 @@ pub fn front(study: &Study) -> Option<Figure> {
     Some(Figure {
         name: "front".into(),
         caption: format!(
-            "Designs that none betters: {} against {name}. Bars: 95 % intervals from the standard uncertainties of the rod's \
+            "Pareto front: {} against {name}. Bars: 95 % intervals from the standard uncertainties of the rod's \
              numbers.{more}",
             first.figure.name_and_unit().0
         ),

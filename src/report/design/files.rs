@@ -1,6 +1,6 @@
 //! The front as a table for other programs, and the shown rods as rod files.
 
-use super::cells::{half_of, known_at, tube_of};
+use super::cells::{are_sleeves_optional, half_of, known_at, sleeves_of, tube_of};
 use super::refined;
 use crate::design::{Figure, Shown, Study};
 use crate::error::Result;
@@ -28,6 +28,8 @@ pub fn files(study: &Study) -> Result<Vec<(String, Vec<u8>)>> {
         .filter(|figure| *figure != Figure::Price && !study.known.is_empty())
         .collect();
     heads.extend(halves.iter().map(|figure| Column::number(format!("{}_half_95", figure.key()), "")));
+    let are_sleeves_optional = are_sleeves_optional(study);
+    heads.extend(are_sleeves_optional.then(|| Column::text("sleeves")));
     let mut table = Table::new("front", "", heads);
     for (place, design) in study.found.front.iter().enumerate() {
         let Ok(rod) = study.space.rod(design.index) else { continue };
@@ -43,6 +45,7 @@ pub fn files(study: &Study) -> Result<Vec<(String, Vec<u8>)>> {
         cells.extend(
             halves.iter().map(|figure| half(figure).map_or(String::new(), |half| significant(half, 3))),
         );
+        cells.extend(are_sleeves_optional.then(|| sleeves_of(&rod)));
         table.row(cells);
     }
     let mut files = vec![("designs.csv".to_owned(), table.csv()?.into_bytes())];

@@ -13,7 +13,10 @@ pub fn cards(study: &Study) -> Vec<Card> {
     let kept = Card::new("Keep all limits", found.feasible.to_string(), format!("of {looked_at}"));
     let Some(first) = found.front.first() else { return vec![kept.toned(Tone::Attention)] };
     let front = found.front.len().to_string();
-    let mut cards = vec![kept, Card::new("On the front", front, "bettered by none in every goal")];
+    let mut cards = vec![
+        kept,
+        Card::new("On the front", front, "no other rod is as good in every goal and better in one"),
+    ];
     for goal in &study.space.goals {
         let value = |design: &Design| design.figures.get(goal.figure).unwrap_or(f64::NAN);
         let is_better = |one: &Design, than: &Design| match goal.is_maximised {
@@ -28,13 +31,18 @@ pub fn cards(study: &Study) -> Vec<Card> {
     }
     if let Some(base) = &study.base {
         let (value, tone) = match base.bettered_by {
-            0 => ("bettered by none".to_owned(), Tone::Good),
-            count => (format!("bettered by {count}"), Tone::Attention),
+            0 => ("none is better in every goal".to_owned(), Tone::Good),
+            count => (format!("{} better in every goal", are(count)), Tone::Attention),
         };
         let detail = if base.broken.is_empty() { "it keeps all limits" } else { "it breaks a limit" };
         cards.push(Card::new(format!("Rod {}", base.rod.name), value, detail).toned(tone));
     }
     cards
+}
+
+/// `1 rod is`, `3 rods are`.
+fn are(number: usize) -> String {
+    format!("{} {}", count(number as u64, "rod"), if number == 1 { "is" } else { "are" })
 }
 
 /// One sentence each.

@@ -39,7 +39,7 @@ pub fn json(space: &DesignSpace, found: &Refined) -> Value {
 pub fn section(study: &Study, found: &Refined) -> Section {
     let figures = columns(study);
     let mut heads = vec![Column::text(""), Column::text("tube")];
-    heads.extend(shape_columns());
+    heads.extend(shape_columns(study));
     heads.extend(figures.iter().map(|figure| {
         let (name, unit) = figure.name_and_unit();
         Column::number(name, unit)
@@ -54,7 +54,7 @@ pub fn section(study: &Study, found: &Refined) -> Section {
     let mut table = Table::new("refined", caption, heads);
     let mut row = |name: &str, rod: &Rod, tube: String, values: &Figures| {
         let mut cells = vec![name.to_owned(), tube];
-        cells.extend(shape_cells(rod));
+        cells.extend(shape_cells(study, rod));
         let value = |figure| values.get(figure).map_or("–".to_owned(), |v| significant(v, DIGITS));
         cells.extend(figures.iter().map(|figure| value(*figure)));
         table.row(cells);

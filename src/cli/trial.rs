@@ -129,8 +129,8 @@ impl Make {
         let (staged, directory) = (staged?, self.directory.display().to_string());
         let shown = visible(&directory);
         let text = format!(
-            "{} cases in {shown}, key in {} (keep it from whoever answers; it holds the seed).\nrodcal trial answer {shown}\n",
-            staged.manifest.cases,
+            "{} in {shown}, key in {} (keep it from whoever answers; it holds the seed).\nrodcal trial answer {shown}\n",
+            counted(staged.manifest.cases),
             visible(&key.display().to_string())
         );
         let json = json!({
@@ -150,6 +150,11 @@ impl Make {
     }
 }
 
+/// `1 case`, `40 cases`.
+fn counted(cases: usize) -> String {
+    format!("{cases} case{}", if cases == 1 { "" } else { "s" })
+}
+
 impl AnswerCases {
     fn run(&self) -> Result<Outcome> {
         let manifest = Manifest::read(&self.directory)?;
@@ -162,6 +167,13 @@ impl AnswerCases {
             _ => true,
         };
         let asked: Vec<String> = manifest.case_names().into_iter().filter(is_asked).collect();
+        if let (true, Some(range)) = (asked.is_empty(), &self.case_range) {
+            return Err(Error::Argument {
+                name: "--case-range",
+                found: format!("{}..{}, where the trial has none", range.start, range.end - 1),
+                expected: format!("some of its {}", counted(manifest.cases)),
+            });
+        }
         let open = answers::missing(&asked, &given);
         let progress = Progress::new("cases", open.len());
         let answered = open.chunks(BLOCK).try_for_each(|block| {
@@ -175,8 +187,8 @@ impl AnswerCases {
         progress.finish();
         answered?;
         let text = format!(
-            "{} cases answered, {} were before: {}\n",
-            open.len(),
+            "{} answered, {} were before: {}\n",
+            counted(open.len()),
             asked.len() - open.len(),
             visible(&path.display().to_string())
         );

@@ -106,7 +106,8 @@ fn keys(rows: &[Reading]) -> Vec<LineKey> {
     for row in rows {
         for channel in Axis::ALL.into_iter().filter(|channel| row.offset[channel.index()].is_some()) {
             let key = LineKey::of_reading(row, channel);
-            if !keys.contains(&key) {
+            // rows of one line mostly follow each other
+            if !keys.iter().rev().any(|known| *known == key) {
                 keys.push(key);
             }
         }

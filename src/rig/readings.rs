@@ -12,6 +12,7 @@ mod tests;
 mod warning;
 mod write;
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use crate::delimited::{Row, Table, meant_to_be, nearest_name, renamed};
@@ -154,6 +155,14 @@ impl Readings {
         check_columns(&table)?;
         limits::check(file, table.rows().count(), limits::READINGS, "readings")?;
         let rows = table.rows().map(read_row).collect::<Result<Vec<_>>>()?;
+        limits::check(
+            file,
+            line_count(&rows),
+            limits::RIG_LINES,
+            "lines of different channels and stations",
+        )?;
+        let sessions: HashSet<&str> = rows.iter().filter_map(|row| row.session.as_deref()).collect();
+        limits::check(file, sessions.len(), limits::SESSIONS, "sessions")?;
         check_loads(file, &rows)?;
         let (header, source, misspelt) = header::read(file, text, table.dialect())?;
         let mut warnings = warning::all(&table, &rows);
@@ -161,6 +170,16 @@ impl Readings {
         let load_column = if table.has("load_kg") { LoadColumn::Kilograms } else { LoadColumn::Newtons };
         Ok(Readings { file: file.to_owned(), source, header, load_column, warnings, rows })
     }
+}
+
+/// Lines of channel, direction and stations.
+fn line_count(rows: &[Reading]) -> usize {
+    let bits = |station: Option<f64>| station.map(f64::to_bits);
+    let lines = rows.iter().flat_map(|row| {
+        let channels = Axis::ALL.into_iter().filter(|channel| row.offset[channel.index()].is_some());
+        channels.map(|channel| (row.direction, channel, bits(row.load_station), bits(row.read_station)))
+    });
+    lines.collect::<HashSet<_>>().len()
 }
 
 /// What a cell of a file cannot be, a row of a program cannot either.

@@ -10,6 +10,7 @@ mod encoding;
 mod existing;
 mod in_place;
 mod leftovers;
+mod lock;
 mod marker;
 mod single;
 mod staged;
@@ -21,8 +22,9 @@ pub use self::content::{names_in, read_bytes, read_inside, sha256};
 pub use self::disk::faults;
 pub use self::encoding::text_of_bytes;
 pub use self::existing::Existing;
+pub use self::lock::{Lock, lock};
 pub use self::marker::MARKER;
-pub use self::single::{append, move_to, remove_tree, write_new, write_whole};
+pub use self::single::{append, move_to, remove_tree, shorten, write_new, write_whole};
 pub use self::staged::{Created, Staged, create_directories};
 
 use self::existing::{Known, Standing, refuse};

@@ -17,6 +17,11 @@ pub const TABLE_COLUMNS: usize = 1_000;
 pub const TABLE_CELLS: usize = 10_000_000;
 /// Readings of one rod.
 pub const READINGS: usize = 100_000;
+/// Lines that readings are sorted into: channel, direction and station of the load, station of the
+/// sensor.
+pub const RIG_LINES: usize = 2_000;
+/// Sessions in which a rod was mounted again: each has a root of its own.
+pub const SESSIONS: usize = 500;
 /// Different loads of a line that was measured in more than 50 trials.
 pub const REPEATED_LOADS: usize = 2_000;
 /// Bytes of a TOML file: rod, robot, campaign, design.
@@ -33,6 +38,12 @@ pub const URDF_NODES: usize = 1_000_000;
 pub const ROBOT_JOINTS: usize = 64;
 /// Size of a joint's value in a table, degrees or mm: the sine of what is larger says nothing.
 pub const JOINT_VALUE: usize = 1_000_000_000;
+/// Places where a tracker or the base stood: each is six unknowns of a dense system.
+pub const STATIONS: usize = 100;
+/// Clamps of a campaign, or sockets of its placements: each may be three unknowns of it.
+pub const CLAMPS: usize = 500;
+/// Values of one key of a design file.
+pub const DESIGN_VALUES: usize = 100_000;
 /// Effects of a robot file.
 pub const ROBOT_EFFECTS: usize = 1_000;
 /// Laws of a robot file.
@@ -50,6 +61,8 @@ pub const WORDS_BYTES: usize = 200;
 /// Masses, joints, sleeves and laws of a rod, of each: what sits along it is nodes of its beam, and
 /// numbers whose part in the uncertainty is found by a beam of its own.
 pub const ROD_PARTS: usize = 100;
+/// Sleeves of a design file that a rod may have or not: each doubles the combinations.
+pub const OPTIONAL_SLEEVES: usize = 10;
 /// Bytes of a result (result.json) that is read again.
 pub const RESULT_BYTES: usize = 64_000_000;
 /// Cases of a trial.

@@ -13,6 +13,7 @@ use super::layout::{Clamp, Role, Seen, Sockets};
 use super::{AccuracyLimits, Campaign, Refit, Warning, checks, recording};
 use crate::error::{Error, Result};
 use crate::files;
+use crate::limits;
 use crate::rig::readings::Readings;
 use crate::robot::{Robot, is_urdf};
 use crate::rod::Rod;
@@ -310,6 +311,7 @@ impl Reader<'_> {
     }
 
     fn clamps(&self, raw: &[RawClamp]) -> Result<Vec<Clamp>> {
+        limits::check(self.toml.file(), raw.len(), limits::CLAMPS, "clamps")?;
         let mut clamps: Vec<Clamp> = Vec::new();
         for clamp in raw {
             let id = clamp.id.get_ref().trim();

@@ -9,6 +9,7 @@ use super::layout::{Clamp, Role, Seen, Sockets};
 use super::{Distance, Group, GroupName, Recording, Row, Station, Targets, Warning, checks};
 use crate::delimited::{Row as Cells, Table, comments_above};
 use crate::error::{Error, Place, Result};
+use crate::limits;
 use crate::robot::Robot;
 use crate::spatial::Pose;
 use crate::units::MM;
@@ -34,6 +35,7 @@ pub(super) fn read(
     let table = Table::parse(file, text, |column| columns.holds_numbers(column))?;
     columns.check(&table, role)?;
     let mut reader = Reader {
+        file,
         columns: &columns,
         seen,
         has_stations: table.has(STATION),
@@ -80,6 +82,7 @@ pub(super) fn read(
 }
 
 struct Reader<'a> {
+    file: &'a str,
     columns: &'a Columns,
     seen: Seen<'a>,
     has_stations: bool,
@@ -125,6 +128,7 @@ impl Reader<'_> {
             return Ok(index);
         }
         self.stations.push(name.to_owned());
+        limits::check(self.file, self.stations.len(), limits::STATIONS, "stations or more")?;
         Ok(self.stations.len() - 1)
     }
 
@@ -164,6 +168,7 @@ impl Reader<'_> {
             return Ok(index);
         }
         self.groups.push(group);
+        limits::check(self.file, self.groups.len(), limits::CLAMPS, "clamps or sockets, or more")?;
         Ok(self.groups.len() - 1)
     }
 }

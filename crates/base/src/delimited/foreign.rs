@@ -5,7 +5,10 @@ use super::quoted;
 /// Words for what a column holds, without accents (ä is ae, é is e), and its name here. `#` stands
 /// for the joint's number, `@` for an axis. German, French, Italian and Spanish, for laboratories
 /// export in the language of their spreadsheet.
-const WORDS: [(&str, &str); 15] = [
+/// As controllers write them too: A1 … A6, J1, X.
+const WORDS: [(&str, &str); 17] = [
+    ("a j", "q#_deg"),
+    ("x y z", "@_mm"),
     ("achse gelenk gelenkwinkel winkel joint axe articulation asse giunto eje", "q#_deg"),
     ("achse richtung lastrichtung axe direction asse direzione eje direccion", "axis"),
     ("kraft last belastung force charge forza carico fuerza carga", "load_n"),
@@ -59,7 +62,7 @@ fn translated<'k>(column: &str, known: &[&'k str]) -> Option<(&'k str, Option<St
     let pieces = pieces(column);
     let (word, rest) = pieces.split_first()?;
     let number = rest.iter().find(|piece| piece.chars().all(|c| c.is_ascii_digit()));
-    let axis = rest.iter().find(|piece| ["x", "y", "z"].contains(&piece.as_str()));
+    let axis = pieces.iter().find(|piece| ["x", "y", "z"].contains(&piece.as_str()));
     let unit = rest.iter().rfind(|piece| Some(*piece) != number && Some(*piece) != axis);
     let find = |pattern: &str| {
         let name = match (pattern.contains('#'), number, pattern.contains('@'), axis) {
@@ -138,6 +141,13 @@ mod tests {
             "rename \"Achse\" to axis, \"Kraft [kN]\" to load_n (converted from kN), \"Versuch\" to trial, \
              \"Verschiebung Y [µm]\" to dy_um, \"Temperatur [°C]\" to temperature_c, \"Zeit_s\" to time_s"
         );
+        assert_eq!(
+            hint(&["Name", "A1", "J2 [rad]", "X", "Y [m]"], &ARM).unwrap(),
+            "rename \"A1\" to q1_deg, \"J2 [rad]\" to q2_deg (converted from rad), \"X\" to x_mm, \
+             \"Y [m]\" to y_mm (converted from m)"
+        );
+        // on a rig nobody knows what X is
+        assert_eq!(hint(&["X", "A"], &RIG), None);
         assert_eq!(hint(&["Last (kg)"], &RIG).unwrap(), "rename \"Last (kg)\" to load_kg");
         assert_eq!(
             hint(&["Déplacement x (mm)"], &RIG).unwrap(),

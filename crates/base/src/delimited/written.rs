@@ -98,9 +98,12 @@ fn visible_but<'t>(text: &'t str, kept: &[char]) -> Cow<'t, str> {
 
 /// Whether a terminal, or a browser, does something else than show this letter.
 pub fn is_obeyed(c: char) -> bool {
+    // of no width, or a blank that is none: names that look alike could differ
+    const UNSEEN: [char; 6] = ['\u{ad}', '\u{115f}', '\u{1160}', '\u{180e}', '\u{3164}', '\u{ffa0}'];
     c.is_control()
+        || UNSEEN.contains(&c)
         || matches!(c, '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
-            | '\u{feff}' | '\u{e0000}'..='\u{e007f}')
+            | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
 }
 
 #[cfg(test)]
@@ -114,6 +117,7 @@ mod tests {
         assert_eq!(visible_lines("a\tb\nc\r\u{7f}"), "a\tb\nc\\r\\x7f");
         assert!(matches!(visible("plain – µm²"), Cow::Borrowed(_)));
         assert_eq!(quoted("\u{1b}"), "\"\\x1b\"");
+        assert_eq!(visible("a\u{ad}b\u{3164}\u{fffa}"), "a\\xadb\\u{3164}\\u{fffa}");
         assert_eq!(message("a\nb\u{1b}"), "a, b\\x1b");
         assert_eq!(message(&"9".repeat(5000)).chars().count(), 202);
     }

@@ -23,6 +23,12 @@ pub(super) fn open_to_append(path: &Path) -> Result<File> {
     std::fs::OpenOptions::new().create(true).append(true).open(path)
 }
 
+/// Only so many bytes of a file stay.
+pub(super) fn shorten(path: &Path, length: u64) -> Result<()> {
+    strike()?;
+    std::fs::OpenOptions::new().write(true).open(path)?.set_len(length)
+}
+
 /// All of it; of what is interrupted a part is written.
 pub(super) fn write(file: &mut File, contents: &[u8]) -> Result<()> {
     match strike() {

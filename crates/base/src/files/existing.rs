@@ -48,6 +48,17 @@ pub(super) enum Known {
 /// How the key of a sealed trial begins: without it nobody can score the answers.
 const KEY: &[u8] = b"{\"trial\":{\"made_by\":";
 
+/// Also one of an earlier program, that has no such line: `{"case":"…","kind":`.
+fn is_key(content: &[u8]) -> bool {
+    const CASE: &[u8] = b"{\"case\":\"";
+    const KIND: &[u8] = b"\",\"kind\":";
+    let is_case = |rest: &[u8]| {
+        let name = rest.iter().position(|&byte| byte == b'"').unwrap_or(rest.len());
+        rest[name..].starts_with(KIND)
+    };
+    content.starts_with(KEY) || content.strip_prefix(CASE).is_some_and(is_case)
+}
+
 impl Known {
     /// Whose a file is, where it must not be replaced.
     pub(super) fn whose(&self, name: &str, there: &Standing) -> Option<Whose> {
@@ -85,6 +96,6 @@ impl Standing {
             return Ok(Some(Standing { path, sha256: String::new(), is_key: false }));
         }
         let content = read_bytes(&path)?;
-        Ok(Some(Standing { path, sha256: sha256(&content), is_key: content.starts_with(KEY) }))
+        Ok(Some(Standing { path, sha256: sha256(&content), is_key: is_key(&content) }))
     }
 }

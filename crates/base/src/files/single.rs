@@ -61,6 +61,14 @@ pub fn append(path: &Path, contents: &[u8]) -> Result<()> {
     written.map_err(failed("write", path))
 }
 
+/// Takes from the end of a file all but its first bytes.
+///
+/// # Errors
+/// [`Error::File`](crate::Error::File).
+pub fn shorten(path: &Path, length: usize) -> Result<()> {
+    disk::shorten(path, length as u64).map_err(failed("write", path))
+}
+
 /// Gives a folder another name; only an empty folder may stand there.
 ///
 /// # Errors

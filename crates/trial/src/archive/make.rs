@@ -2,6 +2,7 @@
 //!
 //! Until then the cases stand in `DIR.part` and the truths in `KEY.part`, seed and all. A run that
 //! is killed leaves both, and the same command goes on with them; one that fails leaves nothing.
+//! Only one run at a time works with them.
 
 #[cfg(test)]
 mod tests;
@@ -16,7 +17,7 @@ use super::{MANIFEST, Manifest, key_of, line, parsed, text_of};
 use crate::ground_truth::GroundTruth;
 use crate::{Seed, Source, Suite};
 use rodcal_base::error::{Error, Place, Result, Whose};
-use rodcal_base::files::{self, Created, Existing};
+use rodcal_base::files::{self, Created, Existing, Lock};
 use rodcal_base::parallel::in_parallel;
 
 /// Cases made before any of them is written.
@@ -74,6 +75,8 @@ struct Part {
     truths: PathBuf,
     /// Directories above both that were missing.
     created: Vec<Created>,
+    /// Of the truths; gone after them.
+    _lock: Lock,
 }
 
 impl Drop for Part {
@@ -91,8 +94,14 @@ impl StagedTrial {
     pub fn seal(mut self) -> Result<()> {
         let Part { directory, key, folder, .. } = &self.part;
         // in this order: what is killed between the two goes on, for the same key may stand there
+        let is_own = key.symlink_metadata().is_err();
         files::write_new(key, self.key_text.as_bytes(), Existing::Keep)?;
-        files::move_to(folder, directory).inspect_err(|_| files::remove_tree(key))?;
+        files::move_to(folder, directory).inspect_err(|_| {
+            // the same key may be that of a trial that has come there
+            if is_own {
+                files::remove_tree(key);
+            }
+        })?;
         self.part.created.drain(..).for_each(Created::keep);
         Ok(())
     }
@@ -113,7 +122,8 @@ pub fn make(directory: &Path, key: &Path, plan: &Plan, made: impl Fn() + Sync + 
         });
     }
     let (folder, truths) = (with_part(directory)?, with_part(key)?);
-    let is_begun = truths.exists();
+    let lock = files::lock(&truths)?;
+    let is_begun = lock.is_some();
     let kept = |path: &Path| Err(Error::InTheWay { files: vec![path.to_owned()], whose: Whose::Kept });
     let is_there = |path: &Path| path.symlink_metadata().is_ok();
     if is_there(directory) && !(directory.is_dir() && files::names_in(directory).is_empty()) {
@@ -136,10 +146,15 @@ pub fn make(directory: &Path, key: &Path, plan: &Plan, made: impl Fn() + Sync + 
     };
     let above = |path: &Path| files::create_directories(path.parent().unwrap_or(Path::new("")));
     let created = vec![above(directory)?, above(key)?];
-    let part = Part { directory: directory.to_owned(), key: key.to_owned(), folder, truths, created };
-    if lines.is_empty() {
-        files::write_whole(&part.truths, line(&Begun { begun: plan.of(seed) })?.as_bytes())?;
-    }
+    let lock = match lock {
+        Some(lock) => lock,
+        None => {
+            files::write_new(&truths, line(&Begun { begun: plan.of(seed) })?.as_bytes(), Existing::Keep)?;
+            files::lock(&truths)?.ok_or_else(|| gone(&truths))?
+        }
+    };
+    let (directory, key) = (directory.to_owned(), key.to_owned());
+    let part = Part { directory, key, folder, truths, created, _lock: lock };
     let source = Source { seed, suite: plan.suite, residuals: plan.residuals.clone() };
     let mut next = plan.range.start + lines.lines().count();
     (plan.range.start..next).for_each(|_| made());
@@ -221,9 +236,15 @@ fn begun(truths: &Path, plan: &Plan) -> Result<(Seed, String)> {
         return Err(another());
     }
     if text.len() < length {
-        files::write_whole(truths, text.as_bytes())?;
+        files::shorten(truths, text.len())?;
     }
     Ok((seed, lines.to_owned()))
+}
+
+/// Somebody has removed what was just written.
+fn gone(path: &Path) -> Error {
+    let source = std::io::Error::from(std::io::ErrorKind::NotFound);
+    Error::File { path: path.to_owned(), action: "write", source }
 }
 
 /// Whether the key holds all of the truths that are kept.

@@ -295,7 +295,10 @@ impl Part {
         line("single, identifiable: nothing named", &single.missed);
         line(
             "single, detectable, named: truth in class",
-            &format!("{}; class of {:.1}", single.in_class, single.class_size),
+            &match single.class_size > 0.0 {
+                true => format!("{}; class of {:.1}", single.in_class, single.class_size),
+                false => single.in_class.to_string(),
+            },
         );
         line("single, below the limit: silent", &below.silent);
         line("single, below the limit: silent or right", &below.silent_or_right);

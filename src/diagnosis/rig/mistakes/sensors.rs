@@ -367,13 +367,18 @@ fn expected_of_rod(
     lines: &[Line],
     by_rod: &Expected,
 ) -> Option<Vec<(f64, f64)>> {
+    let without: HashSet<usize> = without.iter().copied().collect();
+    let says = |k: usize, i: usize| by_rod.slopes[k] * data[i].signed_load();
+    // of each line: whether its others are some, and say what the rod says
+    let is_right = |(k, line): (usize, &Line)| {
+        let mut others = line.data.iter().copied().filter(|i| !without.contains(i)).peekable();
+        others.peek().is_some()
+            && others.all(|i| (data[i].measured - says(k, i)).abs() < RIGHT * says(k, i).abs())
+    };
+    let are_right: Vec<bool> = lines.iter().enumerate().map(is_right).collect();
     let expected_at = |&i: &usize| {
         let k = lines.iter().position(|line| line.holds(&data[i]))?;
-        let says = |i: usize| by_rod.slopes[k] * data[i].signed_load();
-        let mut others = lines[k].data.iter().copied().filter(|i| !without.contains(i)).peekable();
-        others.peek()?;
-        let is_right = others.all(|i| (data[i].measured - says(i)).abs() < RIGHT * says(i).abs());
-        is_right.then(|| (says(i), SCALE * says(i).abs()))
+        are_right[k].then(|| (says(k, i), SCALE * says(k, i).abs()))
     };
     at.iter().map(expected_at).collect()
 }

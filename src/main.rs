@@ -18,10 +18,9 @@ fn main() -> ExitCode {
     match cli::run(&arguments).and_then(deliver) {
         Ok(status) => status,
         Err(error) => {
-            let word = cli::output::coloured("error:", cli::output::RED);
-            cli::output::to_stderr(&word, &error.to_string());
+            cli::output::say("error:", Some(cli::output::RED), &error.to_string());
             if let Some(hint) = error.hint() {
-                cli::output::to_stderr("hint:", hint);
+                cli::output::say("hint:", None, hint);
             }
             ExitCode::from(2)
         }

@@ -46,5 +46,6 @@ mod swing;
 mod switch;
 pub mod table;
 pub mod text;
+mod unbroken;
 
 pub use document::{Block, Card, PageLink, Report, Section, Tone};

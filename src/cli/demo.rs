@@ -7,7 +7,7 @@ use rodcal::beam::Physics;
 use rodcal::calibration::{self, Campaign, CompareOptions};
 use rodcal::compliance::{DEFAULT_ELEMENTS, Mode, Study, paper_contact_force};
 use rodcal::diagnosis::calibration::Neighbours;
-use rodcal::report::text::wrapped;
+use rodcal::report::text::wrapped_within;
 use rodcal::report::{self, Block, Card, PageLink, Report, Section};
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use super::embedded::{
     CAMPAIGN, CAMPAIGN_FILE, LOAD_CELL, LOAD_CELL_FILE, RECORDED, RODS, named_by_the_campaign,
 };
-use super::output::Outcome;
+use super::output::{Outcome, width};
 
 /// What the numbers of the demo are worth.
 const RECONSTRUCTED: &str = "Rods 2# and 5# and their readings are reconstructed from the figures of the Improved \
@@ -52,6 +52,7 @@ pub fn run() -> Result<Outcome> {
         title: title.into(),
         ..Report::default()
     });
+    let wrapped = |words: &str| wrapped_within(words, width());
     let (mut results, mut words, mut fitted) = (Vec::new(), String::new(), String::new());
     let mut provenance: Vec<(String, String)> = Vec::new();
     for example in &RODS {

@@ -297,7 +297,7 @@ const YELLOW: u8 = 33;
 pub const RED: u8 = 31;
 
 /// A word for stderr: in colour on a terminal, unless NO_COLOR says otherwise.
-pub fn coloured(word: &str, colour: u8) -> String {
+fn coloured(word: &str, colour: u8) -> String {
     let is_plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     match std::io::stderr().is_terminal() && !is_plain {
         true => format!("\u{1b}[1;{colour}m{word}\u{1b}[0m"),
@@ -308,26 +308,31 @@ pub fn coloured(word: &str, colour: u8) -> String {
 /// A line on stderr after a word of the program's own. Nobody may be listening (`2>&1 | head`), and
 /// `eprintln!` would panic. Names of files and what stands in them may hold anything: it is shown,
 /// not obeyed.
-pub fn to_stderr(word: &str, line: &str) {
+fn to_stderr(word: &str, line: &str) {
     let space = if word.is_empty() { "" } else { " " };
     let _ = writeln!(std::io::stderr(), "{word}{space}{}", visible(line));
 }
 
-/// A warning on stderr: on a terminal in lines that fit, in a file or a pipe one line.
 fn warn(warning: &str) {
-    let word = "warning:";
+    say("warning:", Some(YELLOW), warning);
+}
+
+/// A sentence on stderr after a word of the program's own: on a terminal in lines that fit, in a
+/// file or a pipe one line.
+pub fn say(word: &str, colour: Option<u8>, sentence: &str) {
     match std::io::stderr().is_terminal() {
         true => {
-            let lines = text::hanging(&format!("{word} "), &visible(warning), columns());
+            let lines = text::hanging(&format!("{word} "), &visible(sentence), columns());
             let rest = lines.strip_prefix(word).unwrap_or(&lines);
-            let _ = write!(std::io::stderr(), "{}{rest}", coloured(word, YELLOW));
+            let word = colour.map_or_else(|| word.to_owned(), |colour| coloured(word, colour));
+            let _ = write!(std::io::stderr(), "{word}{rest}");
         }
-        false => to_stderr(word, warning),
+        false => to_stderr(word, sentence),
     }
 }
 
 /// Columns of the terminal that stdout is; in a file or a pipe tables take what they need.
-fn width() -> usize {
+pub fn width() -> usize {
     if std::io::stdout().is_terminal() { columns() } else { usize::MAX }
 }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use clap::builder::ValueParser;
 use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Command};
 use rodcal::files;
@@ -18,6 +19,8 @@ pub const OUTPUT: &str = "Output";
 const WHERE: &str = "--out";
 /// What changes no result.
 const WITHOUT_EFFECT: [&str; 5] = ["--force", "-q", "--quiet", "-v", "--verbose"];
+/// The option whose file keeps a search, on which what it finds does not depend.
+const KEPT: &str = "resume";
 
 /// What stands in a report besides its own sources: name and value.
 pub struct Provenance {
@@ -53,27 +56,13 @@ impl Provenance {
         // what runs without a command is the demo
         let first = if kept.is_empty() { "rodcal demo" } else { "rodcal" };
         let command = std::iter::once(first.to_owned()).chain(words).collect::<Vec<_>>().join(" ");
-        let named =
-            kept.iter().map(|argument| argument.split_once('=').map_or(&argument[..], |(_, value)| value));
-        let mut found: BTreeSet<PathBuf> = BTreeSet::new();
-        // of a run that is compared, its result
-        let file = |path: PathBuf| if path.is_dir() { path.join(RESULT) } else { path };
-        for path in named.map(PathBuf::from).map(file).filter(|path| path.is_file()) {
-            found.extend(named_in(&path));
-            found.insert(path);
-        }
-        let hash = |path: PathBuf| {
-            let content = files::read_bytes(&path).ok()?;
-            Some((path.display().to_string(), files::sha256(&content)))
-        };
-        let inputs = found.into_iter().filter_map(hash).collect();
-        Provenance { command, options: Vec::new(), inputs, seed: None, time: None }
+        Provenance { command, options: Vec::new(), inputs: Vec::new(), seed: None, time: None }
     }
 
-    /// The same with the options of `command`, as it was typed.
+    /// The same with the options of `command` and the files that they name, as it was typed.
     pub fn with_options(self, command: &Command) -> Provenance {
-        let matches = command.clone().try_get_matches_from(std::env::args_os());
-        Provenance { options: matches.map_or_else(|_| Vec::new(), |m| options(command, &m)), ..self }
+        let Ok(matches) = command.clone().try_get_matches_from(std::env::args_os()) else { return self };
+        Provenance { options: options(command, &matches), inputs: inputs(command, &matches), ..self }
     }
 
     /// As JSON.
@@ -137,7 +126,35 @@ fn options(command: &Command, matches: &ArgMatches) -> Vec<(String, Value, bool)
     own.filter_map(option).collect()
 }
 
-/// The files that a campaign or a design names in its first lines, relative to its own directory.
+/// The files that arguments of the command name, and those that these name, with the SHA-256 of
+/// their content.
+fn inputs(command: &Command, matches: &ArgMatches) -> Vec<(String, String)> {
+    if let Some((name, matches)) = matches.subcommand() {
+        return command.find_subcommand(name).map_or_else(Vec::new, |command| inputs(command, matches));
+    }
+    let is_path = |argument: &&clap::Arg| {
+        argument.get_value_parser().type_id() == ValueParser::path_buf().type_id()
+            && argument.get_help_heading() != Some(OUTPUT)
+            && argument.get_id() != KEPT
+    };
+    let paths = command.get_arguments().filter(is_path);
+    let paths = paths.filter_map(|argument| matches.get_many::<PathBuf>(argument.get_id().as_str()));
+    // of a run that is compared, its result
+    let file = |path: &PathBuf| if path.is_dir() { path.join(RESULT) } else { path.clone() };
+    let mut found: BTreeSet<PathBuf> = BTreeSet::new();
+    for path in paths.flatten().map(file).filter(|path| path.is_file()) {
+        found.extend(named_in(&path));
+        found.insert(path);
+    }
+    let hash = |path: PathBuf| {
+        let content = files::read_bytes(&path).ok()?;
+        Some((path.display().to_string(), files::sha256(&content)))
+    };
+    found.into_iter().filter_map(hash).collect()
+}
+
+/// The files that a campaign names in its first lines, or a design as its catalogue, relative to
+/// its own directory.
 fn named_in(path: &Path) -> Vec<PathBuf> {
     if path.extension().is_none_or(|extension| extension != "toml") {
         return Vec::new();
@@ -146,7 +163,8 @@ fn named_in(path: &Path) -> Vec<PathBuf> {
         return Vec::new();
     };
     let directory = path.parent().unwrap_or(Path::new(""));
-    let names = table.values().filter_map(toml::Value::as_str);
+    let name = |value: &toml::Value| Some(value.as_str().or_else(|| value.get("file")?.as_str())?.to_owned());
+    let names = table.values().filter_map(name);
     names.map(|name| directory.join(name)).filter(|path| path.is_file()).collect()
 }
 
@@ -178,6 +196,28 @@ mod tests {
             made.json()["options"],
             json!({ "count": "3", "seed": null, "mode": "fea", "refine": false })
         );
+    }
+
+    /// A word that is no path is none, whatever lies in the folder; a design names its catalogue.
+    #[test]
+    fn the_inputs_are_the_files_that_arguments_and_files_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name).display().to_string();
+        std::fs::write(at("design.toml"), "[catalogue]\nfile = \"tubes.csv\"\n").unwrap();
+        std::fs::write(at("tubes.csv"), "name\n").unwrap();
+        std::fs::write(at("kept"), "kept\n").unwrap();
+        let path = |name: &'static str| clap::Arg::new(name).value_parser(ValueParser::path_buf());
+        let own = [path("design"), path(KEPT).long(KEPT), clap::Arg::new("word").long("word")];
+        let command = Command::new("rodcal").subcommand(Command::new("design").args(own));
+        let typed =
+            ["rodcal", "design", &at("design.toml"), "--word", &at("tubes.csv"), "--resume", &at("kept")];
+        let matches = command.clone().get_matches_from(typed);
+        let inputs = inputs(&command, &matches);
+        let names: Vec<&String> = inputs.iter().map(|(name, _)| name).collect();
+        assert_eq!(names, [&at("design.toml"), &at("tubes.csv")]);
+        assert_eq!(inputs[1].1, files::sha256(b"name\n"));
+        std::fs::remove_file(at("tubes.csv")).unwrap();
+        assert_eq!(super::inputs(&command, &matches).len(), 1);
     }
 
     #[test]

@@ -8,6 +8,7 @@ use super::draw::{Medium, draw};
 use super::file_name::{file_name, page_name};
 use super::switch::UNITS;
 use super::table::Table;
+use super::unbroken::unbroken;
 
 /// The whole page: style sheet, pictures and what little script there is are inside it, and it may
 /// fetch nothing.
@@ -36,7 +37,7 @@ pub fn page(report: &Report) -> String {
                 a.skip href="#result" { "To the result" }
                 header {
                     h1 { (report.title) }
-                    @if !report.headline.is_empty() { p.headline #result { (report.headline) } }
+                    @if !report.headline.is_empty() { p.headline #result { (unbroken(&report.headline)) } }
                 }
                 main {
                     @if !report.pages.is_empty() { (pages(report)) }
@@ -66,7 +67,7 @@ pub fn fragment(report: &Report) -> String {
         div.rodcal {
             style { (PreEscaped(fragment_style())) }
             h1 { (report.title) }
-            @if !report.headline.is_empty() { p.headline { (report.headline) } }
+            @if !report.headline.is_empty() { p.headline { (unbroken(&report.headline)) } }
             @if !report.cards.is_empty() { (cards(&report.cards)) }
             @if !report.warnings.is_empty() { (warnings(&report.warnings)) }
             @for section in sections { (section) }
@@ -105,25 +106,11 @@ fn cards(cards: &[Card]) -> Markup {
                 li class=(class(card.tone)) {
                     span.label { (card.label) }
                     span.value { (unbroken(&card.value)) }
-                    @if !card.detail.is_empty() { span.detail { (card.detail) } }
+                    @if !card.detail.is_empty() { span.detail { (unbroken(&card.detail)) } }
                 }
             }
         }
     }
-}
-
-/// The same with no break between a number and its unit.
-fn unbroken(value: &str) -> String {
-    let mut unbroken = String::with_capacity(value.len());
-    let mut letters = value.chars().peekable();
-    let mut last = ' ';
-    while let Some(letter) = letters.next() {
-        let is_before_unit = letters.peek().is_some_and(|next| next.is_alphabetic() || *next == '%');
-        let is_joint = letter == ' ' && last.is_ascii_digit() && is_before_unit;
-        unbroken.push(if is_joint { '\u{a0}' } else { letter });
-        last = letter;
-    }
-    unbroken
 }
 
 fn warnings(warnings: &[String]) -> Markup {
@@ -137,6 +124,7 @@ fn warnings(warnings: &[String]) -> Markup {
 
 /// Words between backticks, which a terminal shows, as code.
 fn with_code(text: &str) -> Markup {
+    let text = unbroken(text);
     let parts: Vec<&str> = text.split('`').collect();
     // an odd one stands for itself
     if parts.len().is_multiple_of(2) {
@@ -175,10 +163,16 @@ fn contents(report: &Report) -> Markup {
 }
 
 fn provenance(report: &Report) -> Markup {
+    let list = html! {
+        dl { @for (name, value) in &report.provenance { dt { (name) } dd { (value) } } }
+    };
     html! {
         section.provenance {
             h2 { "Where this comes from" }
-            dl { @for (name, value) in &report.provenance { dt { (name) } dd { (value) } } }
+            // a page beside others has the same as they
+            @if report.page.is_empty() { (list) } @else {
+                details { summary { "The command, and every input with its SHA-256" } div { (list) } }
+            }
             @if !report.result_file.is_empty() {
                 p.files { "All numbers: " a href=(report.result_file) { (report.result_file) } }
             }
@@ -245,7 +239,7 @@ fn figure_markup(beside: Beside, figure: &Figure, number: usize) -> Markup {
                 }
             }
             figcaption {
-                b { "Figure " (number) } ". " (figure.caption) " "
+                b { "Figure " (number) } ". " (unbroken(&figure.caption)) " "
                 @if let Beside::Files(page) = beside {
                     @let file = format!("{}.svg", file_name(page, "figure", number, &figure.name));
                     span.files { a href=(file) { "SVG" } }
@@ -267,7 +261,7 @@ fn table_markup(beside: Beside, table: &Table, number: usize) -> Markup {
     };
     html! {
         details open[table.rows.len() <= FEW_ROWS && !table.is_folded] {
-            summary { b { "Table " (number) } ". " (table.caption) }
+            summary { b { "Table " (number) } ". " (unbroken(&table.caption)) }
             div {
                 (table.shortened(where_else).html(number))
                 @if let Beside::Files(page) = beside {
@@ -321,7 +315,7 @@ mod tests {
     #[test]
     fn a_number_is_not_parted_from_its_unit() {
         assert_eq!(unbroken("748 µm → 46.1 µm"), "748\u{a0}µm → 46.1\u{a0}µm");
-        assert_eq!(unbroken("402 ± 14 µm"), "402 ± 14\u{a0}µm");
+        assert_eq!(unbroken("402 ± 14 µm"), "402\u{a0}±\u{a0}14\u{a0}µm");
         assert_eq!(unbroken("not evaluated"), "not evaluated");
     }
 

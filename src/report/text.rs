@@ -1,6 +1,7 @@
 //! A report for the terminal: the same words and tables as the page, without the pictures.
 
 use super::table::Table;
+use super::unbroken::{JOINT, unbroken};
 use super::{Block, Report, Section};
 
 /// Columns that words may take at most.
@@ -40,22 +41,19 @@ fn table_text(table: &Table, width: usize) -> String {
     caption + &bare.text_within(width) + &notes
 }
 
-/// Words in lines of at most 100 columns, each ended by "\n". Lines of the words stay lines.
-pub fn wrapped(words: &str) -> String {
-    wrapped_within(words, WIDTH)
-}
-
-fn wrapped_within(words: &str, width: usize) -> String {
+/// Words in lines of at most so many columns, and of 100, each ended by "\n". Lines of the words
+/// stay lines.
+pub fn wrapped_within(words: &str, width: usize) -> String {
     words.lines().map(|line| hanging("", line, width)).collect()
 }
 
 /// One paragraph after `mark`, further lines below its first word, in lines of at most 100 columns.
-/// What is longer than a line stays whole.
+/// What is longer than a line stays whole, and so does a number with its unit.
 pub fn hanging(mark: &str, words: &str, width: usize) -> String {
     let width = width.min(WIDTH);
     let indent = mark.chars().count();
     let (mut text, mut column) = (mark.to_owned(), indent);
-    for word in words.split(' ').filter(|word| !word.is_empty()) {
+    for word in unbroken(words).split(' ').filter(|word| !word.is_empty()) {
         let length = word.chars().count();
         if column > indent && column + 1 + length > width {
             text += &format!("\n{:indent$}", "");
@@ -64,7 +62,7 @@ pub fn hanging(mark: &str, words: &str, width: usize) -> String {
             text.push(' ');
             column += 1;
         }
-        text += word;
+        text.extend(word.chars().map(|letter| if letter == JOINT { ' ' } else { letter }));
         column += length;
     }
     text + "\n"
@@ -111,9 +109,9 @@ mod tests {
         assert!(lines[1..].iter().all(|line| line.starts_with("  ") && !line.ends_with(' ')), "{text}");
         let back: Vec<&str> = text[2..].split_whitespace().collect();
         assert_eq!(back.join(" "), format!("{words}{long} end"));
-        assert_eq!(wrapped("one\n\ntwo"), "one\n\ntwo\n");
-        assert_eq!(wrapped(&"y".repeat(WIDTH)).lines().count(), 1);
-        assert_eq!(wrapped(&format!("{} y", "y".repeat(WIDTH - 2))).lines().count(), 1);
-        assert_eq!(wrapped(&format!("{} y", "y".repeat(WIDTH - 1))).lines().count(), 2);
+        assert_eq!(wrapped_within("one\n\ntwo", WIDTH), "one\n\ntwo\n");
+        assert_eq!(wrapped_within(&"y".repeat(WIDTH), WIDTH).lines().count(), 1);
+        assert_eq!(wrapped_within(&format!("{} y", "y".repeat(WIDTH - 2)), WIDTH).lines().count(), 1);
+        assert_eq!(wrapped_within(&format!("{} y", "y".repeat(WIDTH - 1)), WIDTH).lines().count(), 2);
     }
 }

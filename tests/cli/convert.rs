@@ -95,6 +95,9 @@ fn joint_states_become_poses_in_the_order_of_the_robot() {
          2,-57.295780,34.377468,4.00000,5.00000,6.00000,4.900\n"
     );
     sandbox.write("points.txt", "1 2 3\n");
+    let kept = convert(&sandbox, line).unwrap().unwrap_err();
+    assert_eq!(kept, "convert.py: m.csv is there already: give another name, or --force\n");
+    let line = &format!("{line} --force");
     let refused = convert(&sandbox, line).unwrap().unwrap_err();
     assert_eq!(refused, "convert.py: 2 rows of joint values, 1 points: expected as many\n");
     let unknown = convert(&sandbox, &line.replace("shoulder,elbow", "shoulder,wrist")).unwrap().unwrap_err();

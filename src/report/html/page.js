@@ -84,7 +84,7 @@
   };
   // within words: "14 to 3.0 µm", "Ø 32 × 1 mm" (where 1 is exact), "x / mm"
   const [NUMBER, BETWEEN] = ['\\d[\\d\u2009]*(?:\\.\\d+)?', '(?:,\\s|\\s(?:±|→|×|–|to|and|or)\\s)'];
-  const UNIT = `((?:${Object.keys(UNITS).join('|')})(?:/[\\p{L}µ]+)?)(?![\\p{L}\\d²³·/]|\\sm\\b)`;
+  const UNIT = `((?:${Object.keys(UNITS).join('|')})(?:/(?:\\([\\p{L}·]+\\)|[\\p{L}µ]+))?)(?![\\p{L}\\d²³·/]|\\sm\\b)`;
   const QUANTITY = new RegExp(`((?:${NUMBER}${BETWEEN})*${NUMBER})(\\s)${UNIT}`, 'gu');
   const LABEL = new RegExp(` / ${UNIT}(?=\\s*$)`, 'gu');
   const inWords = text => text
@@ -191,7 +191,12 @@
   const SVG = 'http://www.w3.org/2000/svg';
   const at = (from, to, log, share) => log ? from * (to / from) ** share : from + share * (to - from);
   const share = (from, to, log, value) => log ? Math.log(value / from) / Math.log(to / from) : (value - from) / (to - from);
-  const short = value => Number(value.toPrecision(4)).toString().replace('-', '\u2212');
+  // in steps of a thousandth of the axis, however far from zero it is
+  const short = (value, [from, to, log]) => {
+    const step = log ? Math.abs(value) : Math.abs(to - from);
+    const decimals = Math.min(Math.max(3 - Math.floor(Math.log10(step || 1)), 0), 20);
+    return Number(value.toFixed(decimals)).toString().replace('-', '\u2212');
+  };
   const clear = () => {
     document.querySelectorAll('line.cursor').forEach(line => line.remove());
     pictures.forEach(picture => { picture.output.textContent = ''; });
@@ -208,9 +213,11 @@
     const x = panel.x && at(...panel.x, (px - left) / (right - left));
     const y = panel.y && at(...panel.y, (bottom - py) / (bottom - top));
     if (panel.y) rule(picture.svg, left, py, right, py);
-    const read = (label, value, unit) => unit
-      ? `${label.replace(unit, now(unit))}: ${short(value * factor(unit))}` : `${label}: ${short(value)}`;
-    picture.output.textContent = [[panel.xlabel, x, panel.xunit], [panel.ylabel, y, panel.yunit]]
+    const read = (label, value, unit, [from, to, log]) => {
+      const by = unit ? factor(unit) : 1;
+      return `${unit ? label.replace(unit, now(unit)) : label}: ${short(value * by, [from * by, to * by, log])}`;
+    };
+    picture.output.textContent = [[panel.xlabel, x, panel.xunit, panel.x], [panel.ylabel, y, panel.yunit, panel.y]]
       .filter(([, value]) => value !== null).map(axis => read(...axis)).join('   ');
     if (x === null) return;
     for (const other of pictures) for (const p of other.panels) {

@@ -113,6 +113,13 @@ def pair(points, names, path):
     return [xyz for _, xyz in points]
 
 
+def keep(paths, force):
+    """Nothing that is there is overwritten."""
+    for path in paths:
+        if os.path.exists(path) and not force:
+            stop(f"{path} is there already: give another name, or --force")
+
+
 def write(path, header, rows):
     """Written whole or not at all."""
     with open(f"{path}.part", "w", encoding="utf-8", newline="") as file:
@@ -136,6 +143,7 @@ def write_measurements(path, names, joints, points, times=None):
 
 
 def tracker(options):
+    keep([options.out], options.force)
     header, rows, joints = read_joints(options.joint_values, options.joints, options.angle)
     named = [i for i, name in enumerate(header) if name.lower() in ("pose", "name", "point")]
     names = [row[named[0]] for _, row in rows] if named else None
@@ -161,6 +169,7 @@ def standstills(times, joints, least, tolerance):
 
 
 def bag(options):
+    keep([options.out], options.force)
     header, rows, joints = read_joints(options.joint_values, options.joints, options.angle)
     usual = ("%time", "__time", "time", "time_s")
     clocks = [i for i, name in enumerate(header) if name.lower() in usual]
@@ -193,6 +202,7 @@ def sockets(options):
     rows = [[number, *row] for number, row in enumerate(rows, 1)]
     header = ["pose", "placement", "socket", *(f"q{i + 1}_deg" for i in range(len(rows[0]) - 3))]
     os.makedirs(options.out, exist_ok=True)
+    keep([os.path.join(options.out, name) for name in os.listdir(options.out)], options.force)
     robot = os.path.relpath(options.urdf, options.out).replace(os.sep, "/")
 
     def campaign(name, measurements, validation=None):
@@ -223,6 +233,7 @@ def main():
         command = kinds.add_parser(kind.__name__)
         command.set_defaults(convert=kind)
         command.add_argument("--joints", help="columns or joint names, base to flange, with commas")
+        command.add_argument("--force", action="store_true", help="overwrite what is there")
         command.add_argument("--angle", choices=ANGLE, required=True, help="of the joint values")
         if kind is sockets:
             command.add_argument("folder")

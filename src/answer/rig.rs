@@ -14,6 +14,11 @@ use crate::rod::Rod;
 pub fn rig_fit(readings: &Readings, rod: Option<&Rod>, options: &Options) -> Result<Answer> {
     let fit = rig::fit(readings, rod, options)?;
     let mut report = report::rig::report(&fit, readings, rod);
-    report.warnings.extend(suspected(readings, rod)?);
+    let suspicions = suspected(readings, rod)?;
+    // nothing that follows is worth more than what it is made of
+    if let Some(worst) = suspicions.first() {
+        report.headline = format!("Most likely a mistake: {worst}. {}", report.headline);
+    }
+    report.warnings.extend(suspicions);
     Ok(Answer::new(report::rig::json(&fit, readings, rod), report))
 }

@@ -183,8 +183,11 @@ impl fmt::Display for Warning {
             }
             Warning::Outliers { poses, count_in_full } => {
                 let (shown, more) = (poses.iter().take(5), poses.len().saturating_sub(5));
-                let names: Vec<String> =
-                    shown.map(|(name, d)| format!("{name} ({} mm)", significant(d / MM, 2))).collect();
+                let length = |d: f64| match d < MM {
+                    true => format!("{} µm", significant(d / UM, 2)),
+                    false => format!("{} mm", significant(d / MM, 2)),
+                };
+                let names: Vec<String> = shown.map(|(name, d)| format!("{name} ({})", length(*d))).collect();
                 let more = if more > 0 { format!(" and {more} more") } else { String::new() };
                 let (noun, verb) = if poses.len() == 1 { ("pose", "lies") } else { ("poses", "lie") };
                 write!(f, "{noun} {}{more} {verb} farther out than noise explains", names.join(", "))?;

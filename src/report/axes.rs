@@ -58,7 +58,13 @@ fn thinned(scale: Scale, width: f64) -> Scale {
     let every = |step: usize| -> Vec<(f64, String)> {
         scale.ticks.iter().skip(zero % step).step_by(step).cloned().collect()
     };
-    let found = (1..=scale.ticks.len()).map(every).find(|ticks| has_room(ticks, width));
+    // the names of an axis do not begin and end where it does
+    let share = |ticks: &[(f64, String)]| match ticks {
+        [(first, _), .., (last, _)] => ((last - first) / (scale.to - scale.from)).abs().min(1.0),
+        _ => 1.0,
+    };
+    let is_apart = |ticks: &Vec<(f64, String)>| has_room(ticks, width * share(ticks));
+    let found = (1..=scale.ticks.len()).map(every).find(is_apart);
     Scale { ticks: found.unwrap_or_default(), ..scale }
 }
 

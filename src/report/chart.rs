@@ -216,6 +216,8 @@ pub enum Mark {
         text: String,
         /// Where the text is, seen from its point.
         align: Align,
+        /// How far it stands from there, to the right and down, CSS pixels.
+        shift_px: [f64; 2],
         /// It is a number on an axis: on a page it changes with the unit of x.
         is_number: bool,
     },

@@ -176,7 +176,7 @@ impl Basis {
         };
         let instrument = match self.budget.instrument > 0.0 {
             true => format!(", an instrument that is wrong by {} µm", um(self.budget.instrument)),
-            false => String::new(),
+            false => ", without the scatter of an instrument that measures the error there".to_owned(),
         };
         format!(
             "At {}{aligned}. {}; repeatability {} µm{clamps}{instrument}. Errors that no parameter of the calibration has \

@@ -132,18 +132,23 @@ pub(super) fn draw(canvas: &mut Canvas, frame: &Frame, marks: &[Mark], labels: &
     }
     event_labels::draw(canvas, frame, marks, labels);
     for mark in marks {
+        if let Mark::Text { at, text, align, shift_px, .. } = mark {
+            labels.add_text(text_area(text_px(frame, *at, *shift_px), text, *align));
+        }
+    }
+    for mark in marks {
         match mark {
             Mark::Bars { bars, direction, .. } => {
                 bars.iter().for_each(|b| bar_number(canvas, frame, b, *direction));
             }
-            Mark::Text { at, text, align, is_number } if frame.places(*at) => {
+            Mark::Text { at, text, align, shift_px, is_number } if frame.places(*at) => {
                 let anchor = match align {
                     Align::Left => Anchor::Right,
                     Align::Middle => Anchor::Middle,
                     Align::Right => Anchor::Left,
                 };
                 let unit = if *is_number { &frame.units[0] } else { "" };
-                canvas.number(frame.px(*at), text, unit, Lettering { anchor, ..NOTE });
+                canvas.number(text_px(frame, *at, *shift_px), text, unit, Lettering { anchor, ..NOTE });
             }
             Mark::Note { at, text } => note(canvas, frame, *at, text, labels),
             Mark::Arrow { from, text, .. } => note(canvas, frame, *from, text, labels),
@@ -454,6 +459,24 @@ fn bar_number(canvas: &mut Canvas, frame: &Frame, b: &Bar, direction: Direction)
 }
 
 /// A note beside its point, with a thin leader where it had to move away from it.
+/// Where a text beside its point is anchored.
+fn text_px(frame: &Frame, at: [f64; 2], [right, down]: [f64; 2]) -> Px {
+    let [x, y] = frame.px(at);
+    [x + right, y + down]
+}
+
+/// What a text that is anchored there covers.
+fn text_area([x, y]: Px, text: &str, align: Align) -> Area {
+    let width = text_width_px(text, NOTE.size_px);
+    let left = match align {
+        Align::Left => x - width,
+        Align::Middle => x - 0.5 * width,
+        Align::Right => x,
+    };
+    let half = 0.5 * NOTE_LINE_PX;
+    Area { left, top: y - half, right: left + width, bottom: y + half }
+}
+
 fn note(canvas: &mut Canvas, frame: &Frame, at: [f64; 2], text: &str, labels: &mut LabelPlacer) {
     if text.is_empty() || !frame.places(at) {
         return;

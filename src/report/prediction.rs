@@ -24,7 +24,7 @@ use crate::error::Error;
 use crate::linalg::{thin_svd, transposed_product};
 use crate::parallel::in_parallel;
 use crate::robot::{Motion, PredictionQuery, Robot};
-use crate::units::{DEG, MM, significant};
+use crate::units::{DEG, MM, UM, significant};
 
 /// A pose whose own parameters make it so many times more uncertain than the calibration's poses
 /// extrapolates.
@@ -342,7 +342,8 @@ fn picture(prediction: &Prediction) -> Option<Figure> {
 /// The report of `rodcal predict`.
 pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
     let mut columns = vec![Column::text("pose")];
-    columns.extend(["x", "y", "z", "sd x", "sd y", "sd z"].map(|name| Column::number(name, "mm")));
+    columns.extend(["x", "y", "z"].map(|name| Column::number(name, "mm")));
+    columns.extend(["sd x", "sd y", "sd z"].map(|name| Column::number(name, "µm")));
     if prediction.ratios.is_some() {
         columns.push(Column::number("ratio", ""));
     }
@@ -359,7 +360,7 @@ pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
     for (row, (query, tip, sd)) in prediction.tips.iter().enumerate() {
         let mut cells = vec![query.pose.clone()];
         cells.extend(tip.iter().map(|x| format!("{:.4}", x / MM)));
-        cells.extend((0..3).map(|axis| sd.map_or("–".into(), |sd| format!("{:.4}", sd[axis] / MM))));
+        cells.extend((0..3).map(|axis| sd.map_or("–".into(), |sd| format!("{:.1}", sd[axis] / UM))));
         cells.extend(prediction.ratios.as_ref().map(|ratios| format!("{:.2}", ratios[row])));
         table.row(cells);
     }

@@ -15,6 +15,9 @@ use crate::rod::Rod;
 use crate::statistics::Estimate;
 use crate::units::{MM, UM, decimals_of, fixed, significant};
 
+/// No sensor and no weight shows so little, in the units of the tables.
+const NOTHING: f64 = 1e-9;
+
 /// The JSON of `rodcal rig fit --json`.
 pub fn json(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Value {
     let measured = fit.measured.as_ref();
@@ -29,8 +32,10 @@ pub fn json(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Value {
         "slopes": fit.lines.iter().map(line_json).collect::<Vec<_>>(),
         "r": by_name(|r| json!(r.value)),
         "r_std_error": by_name(|r| json!(r.std_error)),
+        "r_dof": by_name(|r| json!(r.dof)),
         "r_rod": measured.map(|m| m.rod_ratio.value),
         "r_rod_std_error": measured.and_then(|m| m.rod_ratio.std_error),
+        "r_rod_dof": measured.map(|m| m.rod_ratio.dof),
         "r_rod_half_width_95": measured.and_then(|m| m.rod_ratio.half_width_95()),
         "cf_um_per_n": measured.map(|m| rows(&m.compliance.force, UM)),
         "cf_std_error_um_per_n": measured.map(|m| rows(&m.std_error.force, UM)),
@@ -104,6 +109,11 @@ pub fn headline(fit: &Fit, rod: Option<&Rod>) -> String {
     match (&fit.measured, rod) {
         (Some(m), Some(rod)) => {
             let (name, r) = (&rod.name, &m.rod_ratio);
+            if !(r.value.is_finite() && r.value > 0.0 && (1.0 / r.value).is_finite()) {
+                return format!(
+                    "The readings say nothing of rod {name}: they and its model are too far apart."
+                );
+            }
             let (ratio, word) = if r.value >= 1.0 { (r.value, "softer") } else { (1.0 / r.value, "stiffer") };
             let by = match ratio <= 2.0 {
                 true => format!("{} %", significant(100.0 * (ratio - 1.0), 2)),
@@ -257,9 +267,15 @@ fn lines_table(fit: &Fit) -> Table {
     table
 }
 
-/// An estimate in its unit, with the digits that its 95 % interval deserves.
+/// An estimate in its unit, with the decimals of two digits of its standard error, which stands
+/// beside it.
 fn known(estimate: &Estimate, unit: f64) -> String {
-    estimate.show(unit).split(' ').next().unwrap_or_default().to_owned()
+    match estimate.std_error.and_then(|error| decimals_of(error / unit)) {
+        Some(decimals) => fixed(estimate.value / unit, decimals),
+        // what rounding leaves of nothing
+        None if (estimate.value / unit).abs() < NOTHING => "0".to_owned(),
+        None => significant(estimate.value / unit, 4),
+    }
 }
 
 /// A number in its unit, or a dash where there is none.
@@ -324,11 +340,12 @@ fn measured_section(measured: &Measured, readings: &Readings, rod: &Rod) -> Sect
         )),
         Block::Table(table),
     ];
-    blocks.extend([
-        matrices("meas", "Meas.", &measured.compliance),
-        matrices("meas-errors", "Standard errors of Meas.", &measured.std_error),
-        matrices("model", "FEA, for comparison.", &measured.model),
-    ]);
+    blocks.push(matrices("meas", "Meas.", &measured.compliance));
+    // two readings on a line leave nothing to know them by
+    if measured.std_error.force.iter().chain(measured.std_error.gravity.iter()).any(|e| e.is_finite()) {
+        blocks.push(matrices("meas-errors", "Standard errors of Meas.", &measured.std_error));
+    }
+    blocks.push(matrices("model", "FEA, for comparison.", &measured.model));
     Section::new(format!("Measured compliance, rod {}", rod.name), blocks)
 }
 

@@ -329,7 +329,7 @@ fn will_tell(plan: &RigPlan) -> Vec<Block> {
 /// they are filled in.
 pub fn template(plan: &RigPlan, rod: &Rod) -> String {
     let mut text = format!(
-        "# Rod {}: offsets in the tool frame to be filled in (µm, from the unloaded, zeroed rod); blank: not measured\n",
+        "# Rod {}: offsets in the tool frame, µm, from the unloaded, zeroed rod; a blank cell was not measured\n",
         visible(&rod.name)
     );
     let is_timed = plan.measurements.iter().any(|one| one.loads.waits.iter().any(|wait| *wait > 0.0));
@@ -338,7 +338,7 @@ pub fn template(plan: &RigPlan, rod: &Rod) -> String {
         .iter()
         .any(|one| one.loads.load_station.is_some() || one.loads.read_station.is_some());
     text += "axis,load_n,trial,phase";
-    text += if is_timed { ",time_s" } else { "" };
+    text += ",time_s,temperature_c";
     text += if has_stations { ",load_station_mm,read_station_mm" } else { "" };
     text += ",dx_um,dy_um,dz_um\n";
     let mm = |station: Option<f64>| station.map_or(String::new(), |s| significant(s / MM, 6));
@@ -350,12 +350,12 @@ pub fn template(plan: &RigPlan, rod: &Rod) -> String {
                     text += &format!(
                         "{},{},{}.{repeat},{phase}",
                         one.loads.direction,
-                        significant(load, 6),
+                        // no weights are finer
+                        significant(load, 3),
                         k + 1
                     );
-                    if is_timed {
-                        text += &format!(",{}", clock + wait);
-                    }
+                    // without a plan for them, times and temperatures are still worth a note
+                    text += &if is_timed { format!(",{},", clock + wait) } else { ",,".to_owned() };
                     if has_stations {
                         text += &format!(",{},{}", mm(one.loads.load_station), mm(one.loads.read_station));
                     }

@@ -117,8 +117,8 @@ const FAR: f64 = 2.0;
 /// Numbers that a sentence lists.
 const FEW: usize = 3;
 
-/// `The stiffness is 0.4 ± 0.1 % above that of the rod file, within the stated uncertainty of E of
-/// steel (1 %).`
+/// `The stiffness is 0.4 ± 0.1 % above that of the rod file, within the standard uncertainty of E
+/// of steel (1 %).`
 fn nominal(found: &RigDiagnosis) -> Option<String> {
     let moved = found.diagnosis.nominal.first()?;
     // said already
@@ -154,7 +154,7 @@ fn nominal(found: &RigDiagnosis) -> Option<String> {
         ));
     }
     Some(format!(
-        "The stiffness is {share} {word} that of the rod file, within the stated uncertainty of {} \
+        "The stiffness is {share} {word} that of the rod file, within the standard uncertainty of {} \
          ({known}){others}.",
         number.name
     ))
@@ -240,7 +240,7 @@ fn of_numbers(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
         };
         let stated = significant(number.standard_uncertainty / number.si, 2);
         let off = off.with_unit(number.unit);
-        format!("{} {off} {word} the file's (stated uncertainty {stated} {})", number.name, number.unit)
+        format!("{} {off} {word} the file's (standard uncertainty {stated} {})", number.name, number.unit)
     };
     let is_far = |moved: &&NominalEstimate| moved.moved().abs() > FAR;
     let far: Vec<String> = moved.iter().filter(is_far).take(FEW).map(said).collect();

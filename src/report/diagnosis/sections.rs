@@ -86,7 +86,8 @@ fn location(subject: &mut Subject) -> Section {
     let mut blocks: Vec<Block> = has_mistake.then(|| Block::Paragraph(said.into())).into_iter().collect();
     blocks.push(locate(subject));
     blocks.append(&mut subject.places);
-    Section::new("Where the mismatch appears", blocks)
+    let is_needed = !subject.diagnosis.findings.is_empty() || subject.diagnosis.discrepancy.is_some();
+    Section::new(if is_needed { "Where the mismatch appears" } else { "What the residuals follow" }, blocks)
 }
 
 fn remains(subject: &Subject) -> Section {

@@ -164,8 +164,8 @@ pub fn locate(subject: &Subject) -> Block {
     table.rows.retain(|row| row[1] != "none" || row[4] != "none");
     match table.rows.len() {
         0 => Block::Paragraph(format!(
-            "The residuals follow none of {all} variables: order, place in the workspace, angles, \
-             torques and moves of joints."
+            "Tested one by one, the residuals follow none of {all} variables: order, place in the \
+             workspace, angles, torques and moves of joints."
         )),
         some => {
             table.notes.push(format!("The residuals follow none of {} other variables.", all - some));
@@ -233,8 +233,8 @@ pub fn proof(subject: &Subject) -> Section {
         let words = format!("The squared held-out error falls by {} %{interval}.", percent(proof.gain));
         if !diagnosis.findings.is_empty() {
             blocks.push(Block::Paragraph(words));
+            blocks.push(Block::Figure(proof_picture((noun, subject.per), proof, diagnosis.noise)));
         }
-        blocks.push(Block::Figure(proof_picture(noun, proof, diagnosis.noise)));
     }
     blocks.push(Block::Table(table));
     Section::new("Does it help?", blocks)
@@ -308,11 +308,11 @@ pub fn replication(subject: &Subject) -> Table {
 }
 
 /// What held-out data say.
-fn proof_picture(noun: &str, proof: &HeldOutErrors, noise: f64) -> Figure {
+fn proof_picture((noun, per): (&str, &str), proof: &HeldOutErrors, noise: f64) -> Figure {
     // after² = before²·(1 − gain)
     let after = |gain: f64| proof.before * (1.0 - gain).max(0.0).sqrt() / UM;
     held_out(
-        noun,
+        (noun, per),
         &HeldOut {
             before_um: proof.before / UM,
             after_um: proof.after / UM,
@@ -321,7 +321,7 @@ fn proof_picture(noun: &str, proof: &HeldOutErrors, noise: f64) -> Figure {
         },
     )
     .captioned(format!(
-        "Error of held-out {noun}: {} µm before, {} µm after. No model predicts better than the \
+        "Error of held-out {noun}, root mean square{per}: {} µm before, {} µm after. No model predicts better than the \
          scatter.",
         um(proof.before),
         um(proof.after)

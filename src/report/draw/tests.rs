@@ -26,7 +26,13 @@ fn every_mark(values: [f64; 3]) -> Chart {
         .with(Mark::Stretch { from: b, to: c, text: label() })
         .with(Mark::Event { at: c, text: label() })
         .with(Mark::Area { label: label(), corners: vec![[a, b], [b, c], [c, a]], style })
-        .with(Mark::Text { at: [b, a], text: label(), align: Align::Left, is_number: true })
+        .with(Mark::Text {
+            at: [b, a],
+            text: label(),
+            align: Align::Left,
+            shift_px: [0.0; 2],
+            is_number: true,
+        })
         .with(Mark::Note { at: [a, c], text: label() })
         .with(Mark::Arrow { from: [a, b], to: [b, c], text: label(), style })
 }

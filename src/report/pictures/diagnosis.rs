@@ -18,7 +18,7 @@ use crate::units::significant;
 /// More points of one series are drawn small.
 const MANY: usize = 60;
 /// Half the size of a point in a cloud, px.
-const CLOUD_PX: f64 = 1.1;
+const CLOUD_PX: f64 = 1.6;
 
 fn padded(range: Option<(f64, f64)>, share: f64) -> (f64, f64) {
     let (low, high) = range.unwrap_or((0.0, 1.0));
@@ -88,9 +88,10 @@ pub fn ranking(candidates: &[Candidate], named_from: f64) -> Figure {
 /// Odds by their power of ten: `20 : 1`, `1 : 160`, `10³¹ : 1`.
 pub fn to_one(log10_odds: f64) -> String {
     let size = log10_odds.abs();
-    let number = match size < 4.0 {
-        true => significant(10f64.powf(size), 2),
-        false => format!("10{}", superscript(size.round() as i32)),
+    let number = match size {
+        0.0 => "1".to_owned(),
+        _ if size < 4.0 => significant(10f64.powf(size), 2),
+        _ => format!("10{}", superscript(size.round() as i32)),
     };
     if log10_odds >= 0.0 { format!("{number} : 1") } else { format!("1 : {number}") }
 }
@@ -120,9 +121,10 @@ pub struct HeldOut {
 }
 
 /// Two bars, the interval on the second, and the noise below which no model comes. `noun` says what
-/// was held out.
-pub fn held_out(noun: &str, data: &HeldOut) -> Figure {
-    let mut chart = Chart::new(format!("error of held-out {noun}"), "root mean square / µm", "");
+/// was held out, `per` of what the root mean square is: nothing, or ` per coordinate`.
+pub fn held_out((noun, per): (&str, &str), data: &HeldOut) -> Figure {
+    let mut chart =
+        Chart::new(format!("error of held-out {noun}"), format!("root mean square{per} / µm"), "");
     chart.y.names = vec![(0.0, "model as it is".into()), (-1.0, "with the findings".into())];
     chart.y.range = Range::Fixed(-1.6, 0.6);
     chart.height_px = Some(110.0);
@@ -190,6 +192,6 @@ mod tests {
     #[test]
     fn nothing_to_show_is_shown_as_nothing() {
         ranking(&[], 20.0).svg();
-        held_out("readings", &HeldOut { before_um: f64::NAN, ..HeldOut::default() }).svg();
+        held_out(("readings", ""), &HeldOut { before_um: f64::NAN, ..HeldOut::default() }).svg();
     }
 }

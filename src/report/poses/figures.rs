@@ -7,8 +7,15 @@ use crate::report::chart::{Axis, Chart, Colour, Dash, Figure, Mark, Marker, Poin
 use crate::robot::{Kinematics, Motion};
 use crate::units::{DEG, MM};
 
-/// Arms drawn at each place: more cover each other.
-const ARMS: usize = 3;
+/// Arms that are drawn: of more none can be followed.
+const ARMS: usize = 4;
+
+/// An arm that is drawn, joint by joint to the flange, and its rod, in {W}.
+struct Arm {
+    label: String,
+    joints: Vec<Vector3<f64>>,
+    rod: Vec<Vector3<f64>>,
+}
 
 /// The arm in some of the poses, all flanges, and the places, from above and from the side.
 pub fn plan(study: &PoseStudy) -> Figure {
@@ -21,23 +28,24 @@ pub fn plan(study: &PoseStudy) -> Figure {
         None if study.setup.tool.norm() < MM => Vec::new(),
         None => vec![Vector3::zeros(), study.setup.tool],
     };
-    let (mut arms, mut rods, mut flanges) = (Vec::new(), Vec::new(), Vec::new());
-    for place in 0..study.places.len() {
-        let own: Vec<&Vec<f64>> =
-            study.chosen.iter().filter(|(group, _)| *group == place).map(|(_, q)| q).collect();
-        for (k, q) in own.iter().enumerate() {
-            kinematics.update(q, &[]);
-            flanges.push(kinematics.flange.origin);
-            // evenly from the first to the last
-            if k % own.len().div_ceil(ARMS).max(1) == 0 {
-                let mut arm: Vec<Vector3<f64>> = kinematics.joints.iter().map(|joint| joint.origin).collect();
-                arm.push(kinematics.flange.origin);
-                arms.push(arm);
-                rods.push(rod.iter().map(|point| kinematics.flange.point(point)).collect::<Vec<_>>());
-            }
+    let is_tracked = study.places.iter().all(|place| place.name.is_tracked());
+    let drawn = representative(study);
+    let (mut arms, mut flanges) = (Vec::new(), Vec::new());
+    for (k, (place, q)) in study.chosen.iter().enumerate() {
+        kinematics.update(q, &[]);
+        flanges.push(kinematics.flange.origin);
+        if drawn.contains(&k) {
+            let own = kinematics.joints.iter().map(|joint| joint.origin);
+            arms.push(Arm {
+                label: match is_tracked {
+                    true => format!("arm, pose {}", k + 1),
+                    false => format!("arm, pose {} at {}", k + 1, study.places[*place].name),
+                },
+                joints: own.chain([kinematics.flange.origin]).collect(),
+                rod: rod.iter().map(|point| kinematics.flange.point(point)).collect(),
+            });
         }
     }
-    let is_tracked = study.places.iter().all(|place| place.name.is_tracked());
     let views = [("from above", "y / mm", 1), ("from the side", "z / mm", 2)];
     let panel = |(title, label, axis): (&str, &str, usize)| {
         let at = |p: &Vector3<f64>| [p.x / MM, p[axis] / MM];
@@ -51,14 +59,20 @@ pub fn plan(study: &PoseStudy) -> Figure {
             points: dots(&flanges),
             style: Style::nth(0).colour(Colour::SkyBlue).marker(Marker::Dot).size(3.0),
         });
-        for (label, lines, colour, width) in
-            [("arm, some poses", &arms, Colour::Grey, 1.4), ("rod", &rods, Colour::Blue, 1.0)]
-        {
-            chart.marks.extend(lines.iter().map(|line| Mark::Line {
+        for (k, arm) in arms.iter().enumerate() {
+            let line = |label: &str, points: &[Vector3<f64>], style| Mark::Line {
                 label: label.into(),
-                points: line.iter().map(at).collect(),
-                style: Style::nth(0).colour(colour).dash(Dash::Solid).width(width),
-            }));
+                points: points.iter().map(at).collect(),
+                style,
+            };
+            let style = Style::nth(k);
+            chart.marks.push(line(&arm.label, &arm.joints, style.width(2.2)));
+            chart.marks.push(line("rod", &arm.rod, style.dash(Dash::Solid).colour(Colour::Black).width(0.8)));
+            chart.marks.push(Mark::Points {
+                label: String::new(),
+                points: dots(&arm.joints),
+                style: style.marker(Marker::Circle).size(2.0),
+            });
         }
         if !is_tracked {
             let places: Vec<Vector3<f64>> = study.places.iter().map(|place| place.device.origin).collect();
@@ -72,12 +86,28 @@ pub fn plan(study: &PoseStudy) -> Figure {
     };
     Figure {
         name: "pose-plan".into(),
-        caption: "The planned poses in {W}: the arm as sticks from joint to joint, the rod, and the flange of every pose."
+        caption: "The planned poses in {W}: the arm in some of them as sticks from joint to joint, \
+                  with the rod, and the flange of every pose."
             .into(),
         panels: views.map(panel).into(),
         columns: 2,
         shared_legend: true,
         ..Figure::default()
+    }
+}
+
+/// Numbers of the poses whose arms are drawn: evenly from the first place to the last, at each the
+/// one in the middle.
+fn representative(study: &PoseStudy) -> Vec<usize> {
+    let count = study.chosen.len();
+    let of_place =
+        |place: usize| -> Vec<usize> { (0..count).filter(|&k| study.chosen[k].0 == place).collect() };
+    let places: Vec<Vec<usize>> =
+        (0..study.places.len()).map(of_place).filter(|own| !own.is_empty()).collect();
+    let evenly = |all: usize| (0..ARMS.min(all)).map(move |k| (2 * k + 1) * all / (2 * ARMS.min(all)));
+    match places.len() {
+        0 | 1 => evenly(count).collect(),
+        several => evenly(several).map(|place| places[place][places[place].len() / 2]).collect(),
     }
 }
 

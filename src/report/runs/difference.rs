@@ -219,8 +219,9 @@ mod tests {
             inputs.iter().map(|(f, s)| format!("{{\"file\": \"{f}\", \"sha256\": \"{s}\"}}")).collect();
         let text = format!(
             "{{\"slopes\": [{{\"axis\": \"y\", \"channel\": \"dy\", \"um_per_n\": {slope}, \"std_error\": 0.3, \
-             \"dof\": 8}}], \"r_rod\": 1.0, \"r_rod_std_error\": 0.01, \"provenance\": {{\"command\": \
+             \"dof\": 8}}], \"r_rod\": {}, \"r_rod_std_error\": 0.01, \"r_rod_dof\": 8, \"provenance\": {{\"command\": \
              \"rodcal rig fit a b\", \"program\": \"rodcal 1\", \"inputs\": [{}]}}}}",
+            slope / 40.0,
             inputs.join(",")
         );
         Run::from_text("a", "a/result.json", &text).unwrap()

@@ -177,12 +177,15 @@ fn scatter(slope: &Value) -> Option<Quantity> {
 
 /// r of each axis, and r_rod.
 fn ratios(json: &Value) -> impl Iterator<Item = Quantity> + '_ {
-    let of_name = |name: String, value: &Value, error: &Value| {
-        Some(Quantity { std_error: error.as_f64(), ..plain(name, "", value.as_f64()?) })
+    let of_name = |name: String, value: &Value, [error, dof]: [&Value; 2]| {
+        let dof = dof.as_f64().unwrap_or(MANY);
+        Some(Quantity { std_error: error.as_f64(), dof, ..plain(name, "", value.as_f64()?) })
     };
     let each = json["r"].as_object().into_iter().flatten();
-    let each = each.filter_map(move |(axis, r)| of_name(format!("r{axis}"), r, &json["r_std_error"][axis]));
-    each.chain(of_name("r_rod".into(), &json["r_rod"], &json["r_rod_std_error"]))
+    let each = each.filter_map(move |(axis, r)| {
+        of_name(format!("r{axis}"), r, [&json["r_std_error"][axis], &json["r_dof"][axis]])
+    });
+    each.chain(of_name("r_rod".into(), &json["r_rod"], [&json["r_rod_std_error"], &json["r_rod_dof"]]))
 }
 
 /// C^F and C^g of a model; what a rig measured stands in its slopes already.

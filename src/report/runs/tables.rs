@@ -115,6 +115,10 @@ fn signed(number: Option<f64>, decimals: usize) -> String {
 /// "46.31 ± 0.24": half of the 95 % interval.
 pub(super) fn shown(quantity: &Option<Quantity>) -> String {
     let Some(quantity) = quantity else { return "–".into() };
+    // a count has no digits behind it
+    if quantity.std_error.is_none() && quantity.unit.is_empty() && quantity.value.fract() == 0.0 {
+        return format!("{:.0}", quantity.value);
+    }
     let half =
         quantity.std_error.map(|error| error * student_t_quantile(0.975, quantity.dof).unwrap_or(f64::NAN));
     with_uncertainty(quantity.value, half.unwrap_or(0.0), 4)

@@ -174,8 +174,8 @@ fn friction_observed(finding: &Finding, model: &CalibrationModel) -> String {
     let known = finding.location.joint().map_or(0.0, known);
     let (place, per, unit) = (&finding.location, first(finding), "µrad/(N·m)");
     let plain = || {
-        let (joint, per) = (capital(place), per.with_unit(unit));
-        format!("{joint} stops by {per} of its load apart when it comes from either side")
+        let (joint, per) = (capital(place), per.with_unit("µrad per N·m of load"));
+        format!("{joint} stops at two angles, {per} apart, depending on the side it comes from")
     };
     on_top(&format!("The friction of {place}"), per, unit, known).unwrap_or_else(plain)
 }

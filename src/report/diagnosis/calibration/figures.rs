@@ -81,11 +81,15 @@ fn residuals(found: &CalibrationDiagnosis, covariate: &Covariate, joint: Option<
         is_apart: before.len() > DENSE,
         events,
     });
+    let explained = match diagnosis.findings.is_empty() && diagnosis.discrepancy.is_none() {
+        true => ". Nothing was found that explains a part of them.",
+        false => {
+            ", before and after the findings are included. Lines: what the findings explain, and the \
+             unexplained remainder."
+        }
+    };
     figure.captioned(format!(
-        "Residuals of the calibration along the {}, before and after the findings are included. Lines: \
-         what the findings explain, and the unexplained remainder. Pure noise would lie within the \
-         band.{marked}",
-        title
+        "Residuals of the calibration along the {title}{explained} Pure noise would lie within the band.{marked}"
     ))
 }
 

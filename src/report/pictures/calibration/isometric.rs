@@ -9,6 +9,14 @@ const TICKS: usize = 5;
 /// Distance of tick labels and of axis labels from their edge, as a part of the box's size.
 const TICK_AWAY: f64 = 0.05;
 const LABEL_AWAY: f64 = 0.2;
+/// And beyond that, down and to the side, CSS pixels: letters are as high in a small box.
+const TICK_PX: [f64; 2] = [2.0, 6.0];
+const LABEL_PX: [f64; 2] = [6.0, 10.0];
+/// The name of the upright axis stands above its highest tick.
+const UP_PX: f64 = 13.0;
+
+/// Across the lower left edge: −½, −½√3.
+const LEFT_DOWN: [f64; 2] = [-0.5, -0.866_025_403_784_438_6];
 
 /// A box with whole ticks at its ends, mm.
 pub(super) struct IsometricBox {
@@ -76,7 +84,15 @@ impl IsometricBox {
     pub(super) fn key_place(&self) -> [f64; 2] {
         let [left, _] = self.seen([self.low[0], self.low[1], self.low[2]]);
         let [_, bottom] = self.seen([self.high[0], self.low[1], self.low[2]]);
-        [left, bottom]
+        [left, bottom.min(self.name_of_x()[1])]
+    }
+
+    /// Below the middle of the lower left edge.
+    fn name_of_x(&self) -> [f64; 2] {
+        let middle = 0.5 * self.low[0] + 0.5 * self.high[0];
+        let [u, v] = self.seen([middle, self.low[1], self.low[2]]);
+        let away = LABEL_AWAY * self.size();
+        [u + away * LEFT_DOWN[0], v + away * LEFT_DOWN[1]]
     }
 
     /// An empty chart with floor, walls, ticks and the names of the axes.
@@ -107,26 +123,29 @@ impl IsometricBox {
             let [u, v] = self.seen(p);
             [u + by * self.size() * dx, v + by * self.size() * dy]
         };
-        let (left_down, right_down, left) = ([-0.5, -0.75f64.sqrt()], [0.5, -0.75f64.sqrt()], [-1.0, 0.0]);
-        let mut number = |at: [f64; 2], label: &String, align: Align| {
-            chart.marks.push(Mark::Text { at, text: label.clone(), align, is_number: true });
+        let (left_down, right_down, left) = (LEFT_DOWN, [-LEFT_DOWN[0], LEFT_DOWN[1]], [-1.0, 0.0]);
+        let mut number = |at: [f64; 2], label: &String, align: Align, [side, down]: [f64; 2]| {
+            let shift_px = [if align == Align::Left { -side } else { side }, down];
+            chart.marks.push(Mark::Text { at, text: label.clone(), align, shift_px, is_number: true });
         };
         for (x, label) in xs {
-            number(away(TICK_AWAY, left_down, [*x, yl, zl]), label, Align::Left);
+            number(away(TICK_AWAY, left_down, [*x, yl, zl]), label, Align::Left, TICK_PX);
         }
         for (y, label) in ys {
-            number(away(TICK_AWAY, right_down, [xh, *y, zl]), label, Align::Right);
+            number(away(TICK_AWAY, right_down, [xh, *y, zl]), label, Align::Right, TICK_PX);
         }
         for (z, label) in zs {
-            number(away(0.3 * TICK_AWAY, left, [xl, yl, *z]), label, Align::Left);
+            number(away(0.3 * TICK_AWAY, left, [xl, yl, *z]), label, Align::Left, [TICK_PX[0], 0.0]);
         }
-        let mut name = |at: [f64; 2], text: &str| {
-            chart.marks.push(Mark::Text { at, text: text.into(), align: Align::Middle, is_number: false });
+        let mut name = |at: [f64; 2], text: &str, align: Align, shift_px: [f64; 2]| {
+            chart.marks.push(Mark::Text { at, text: text.into(), align, shift_px, is_number: false });
         };
         let middle = |a: f64, b: f64| 0.5 * a + 0.5 * b;
-        name(away(LABEL_AWAY, left_down, [middle(xl, xh), yl, zl]), "x / mm");
-        name(away(LABEL_AWAY, right_down, [xh, middle(yl, yh), zl]), "y / mm");
-        name(away(LABEL_AWAY, left, [xl, yl, middle(zl, zh)]), "z / mm");
+        let [side, down] = LABEL_PX;
+        let of_y = away(LABEL_AWAY, right_down, [xh, middle(yl, yh), zl]);
+        name(self.name_of_x(), "x / mm", Align::Middle, [-side, down]);
+        name(of_y, "y / mm", Align::Middle, [side, down]);
+        name(self.seen([xl, yl, zh]), "z / mm", Align::Middle, [0.0, -UP_PX]);
         chart
     }
 }

@@ -16,6 +16,10 @@ const MOST_DOTS: usize = 300;
 /// Bins of their angles, and so many at least from one turn of a curve to the next.
 const BINS: usize = 60;
 const PER_TURN: usize = 3;
+/// Of fewer poses: how many a bin has on average, and how many bins there are.
+const LEAST_IN_BIN: usize = 6;
+const LEAST_BINS: usize = 5;
+const MOST_BINS: usize = 16;
 
 /// Error of one joint over its angle.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -72,6 +76,7 @@ fn panel(joint: &AngleError, which: usize, title: &str) -> Chart {
     }
     chart.marks.push(Mark::Horizontal { at: 0.0, text: String::new() });
     chart.marks.push(poses(joint, which));
+    chart.marks.extend(means(joint, which));
     if has_curve {
         chart.marks.push(Mark::Line {
             label: "finding".into(),
@@ -85,12 +90,7 @@ fn panel(joint: &AngleError, which: usize, title: &str) -> Chart {
 /// A dot for each pose. Of very many the mean and the scatter of neighbours; where the curve turns
 /// so often that means would level it, one pose in several.
 fn poses(joint: &AngleError, which: usize) -> Mark {
-    let drawn: Vec<[f64; 2]> = joint
-        .poses
-        .iter()
-        .filter(|pose| drawable(pose[0]) && drawable(pose[which]))
-        .map(|pose| [pose[0], pose[which]])
-        .collect();
+    let drawn = drawn(joint, which);
     let dot = |at: &[f64; 2]| Point { x: at[0], y: at[1], error: 0.0 };
     let style = Style::nth(0).colour(Colour::Grey).marker(Marker::Dot);
     if drawn.len() <= MOST_DOTS {
@@ -105,7 +105,24 @@ fn poses(joint: &AngleError, which: usize) -> Mark {
         return Mark::Points { label, points, style: style.size(CLOUD_PX) };
     }
     let label = "mean of neighbouring poses ± their standard deviation".into();
-    Mark::Points { label, points: binned(&drawn), style: style.size(2.0) }
+    Mark::Points { label, points: binned(&drawn, BINS, 0.0), style: style.size(2.0) }
+}
+
+fn drawn(joint: &AngleError, which: usize) -> Vec<[f64; 2]> {
+    let poses = joint.poses.iter().filter(|pose| drawable(pose[0]) && drawable(pose[which]));
+    poses.map(|pose| [pose[0], pose[which]]).collect()
+}
+
+/// Beside dots, what several of them say together, where that levels no curve.
+fn means(joint: &AngleError, which: usize) -> Option<Mark> {
+    let drawn = drawn(joint, which);
+    let bins = (drawn.len() / LEAST_IN_BIN).min(MOST_BINS);
+    let is_worth_it = drawn.len() <= MOST_DOTS && bins >= LEAST_BINS.max(PER_TURN * turns(&joint.curve));
+    is_worth_it.then(|| Mark::Points {
+        label: "mean of neighbouring poses ± its standard error".into(),
+        points: binned(&drawn, bins, 0.5),
+        style: Style::nth(0).colour(Colour::Black).marker(Marker::Circle).size(2.6),
+    })
 }
 
 /// How often a curve turns.
@@ -114,22 +131,23 @@ fn turns(curve: &[[f64; 3]]) -> usize {
     steps.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count()
 }
 
-/// Means and standard deviations within bins of one width.
-fn binned(points: &[[f64; 2]]) -> Vec<Point> {
+/// Means within so many bins of one width, and their standard deviations by the number of points to
+/// a power: of a point with 0, of the mean with ½.
+fn binned(points: &[[f64; 2]], bins: usize, power: f64) -> Vec<Point> {
     let (low, high) = extent(points.iter().map(|point| point[0])).unwrap_or((0.0, 1.0));
-    let mut bins: Vec<Vec<&[f64; 2]>> = vec![Vec::new(); BINS];
+    let mut all: Vec<Vec<&[f64; 2]>> = vec![Vec::new(); bins];
     for point in points {
-        let at = BINS as f64 * (point[0] - low) / (high - low).max(f64::MIN_POSITIVE);
-        bins[(at as usize).min(BINS - 1)].push(point);
+        let at = bins as f64 * (point[0] - low) / (high - low).max(f64::MIN_POSITIVE);
+        all[(at as usize).min(bins - 1)].push(point);
     }
     let of_bin = |bin: &Vec<&[f64; 2]>| {
         let count = bin.len() as f64;
         let mean = |k: usize| bin.iter().map(|point| point[k]).sum::<f64>() / count;
         let (x, y) = (mean(0), mean(1));
         let square = bin.iter().map(|point| (point[1] - y).powi(2)).sum::<f64>();
-        Point { x, y, error: (square / (count - 1.0).max(1.0)).sqrt() }
+        Point { x, y, error: (square / (count - 1.0).max(1.0)).sqrt() / count.powf(power) }
     };
-    bins.iter().filter(|bin| !bin.is_empty()).map(of_bin).collect()
+    all.iter().filter(|bin| !bin.is_empty()).map(of_bin).collect()
 }
 
 #[cfg(test)]

@@ -74,9 +74,10 @@ Words:
 The paper is Improved MultiCal, Sensors 2023, 23(12), 5717. Units stand in the
 names of keys and columns (l1_mm, load_n, dz_um).
 
-Exit status: 0 done; 1 a diagnosis found a mismatch, or a calibration's fit is
-not plausible; 2 could not run (the error says what and where), and nothing has
-been written but what a long run keeps to go on from (answers, --resume).";
+Exit status: 0 done; 1 a diagnosis found a mismatch, a calibration's fit is not
+plausible, or no design keeps all limits; 2 could not run (the error says what
+and where), and nothing has been written but what a long run keeps to go on from
+(answers, --resume).";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -84,7 +85,7 @@ enum Command {
     Demo,
     /// How much a rod bends under its weight and the contact force, from its drawing.
     Compliance(compliance::Compliance),
-    /// Which rods none betters; which poses to measure, and how accurate the robot will be.
+    /// Which rod to build; which poses to measure, and how accurate the robot will be.
     #[command(subcommand)]
     Design(design::Design),
     /// How much a rod really bends, from readings of its tip under known loads.

@@ -17,7 +17,16 @@ from ._errors import InputError
 
 def toml(data: Mapping[str, Any]) -> str:
     """A dict with the keys of a file, as TOML; keys whose value is ``None`` are left out."""
-    return "".join(f"{_key(key)} = {_value(value, key)}\n" for key, value in data.items() if value is not None)
+    try:
+        text = "".join(f"{_key(key)} = {_value(value, key)}\n" for key, value in data.items() if value is not None)
+        text.encode()
+    except RecursionError:
+        found, expected = "nested without end", "a dict with the keys of a file"
+    except UnicodeEncodeError:
+        found, expected = "a text with half a character (a lone surrogate)", "text"
+    else:
+        return text
+    raise InputError(f"the dict is {found}, expected {expected}", found=found, expected=expected)
 
 
 def _key(key: Any) -> str:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _rodcal, _text
+from ._arguments import maybe_whole, names, numbers, whole
 from ._errors import InputError, warn
 from ._progress import Progress, Told
 from .inputs import (
@@ -87,7 +88,14 @@ def compliance(
     402.0
     """
     answer = _rodcal.compliance(
-        as_rod(rod)._native, mode, theory, elements, contact_force_n, load_station_mm, read_station_mm, damping_percent
+        as_rod(rod)._native,
+        mode,
+        theory,
+        whole("elements", elements),
+        contact_force_n,
+        load_station_mm,
+        read_station_mm,
+        damping_percent,
     )
     warn(answer.warnings)
     return ComplianceResult(answer)
@@ -114,6 +122,7 @@ def rig_fit(
     """
     model = None if rod is None else as_rod(rod)._native
     native = as_readings(readings)._native
+    elements = whole("elements", elements)
     with Told(progress, "fitting lines") as tell:
         answer = _rodcal.rig_fit(model, native, theory, elements, robust, tell)
     warn(answer.warnings)
@@ -161,6 +170,7 @@ def calibrate(
     46.1
     """
     native = as_campaign(campaign)._native
+    folds = maybe_whole("folds", folds)
     with Told(progress, "calibrating") as tell:
         answer, arrays = _rodcal.calibrate(native, mode, robust, prune, folds, None, tell)
     warn(answer.warnings)
@@ -182,6 +192,7 @@ def compare(
     (['none', 'calc', 'fea', 'meas'], False)
     """
     native = as_campaign(campaign)._native
+    draws, seed = whole("draws", draws), whole("seed", seed)
     with Told(progress, "comparing modes") as tell:
         answer = _rodcal.compare(native, robust, draws, seed, None, tell)
     warn(answer.warnings)
@@ -230,11 +241,12 @@ def predict(
     >>> predict(arm, [[0.0, 90.0]]).tips_mm.round(9).tolist()
     [[400.0, 300.0, 0.0]]
     """
-    native = as_robot(robot)._native
+    own = as_robot(robot)
+    native = own._native
     joints = joint_array(joints_deg, len(native.columns), "`joints_deg`")
-    tool = None if tool_mm is None else [float(x) for x in tool_mm]
+    tool = None if tool_mm is None else numbers("tool_mm", tool_mm, 3)
     with Told(progress, "predicting") as tell:
-        return PredictionResult(_rodcal.predict(native, joints, tool, aligned, tell))
+        return PredictionResult(_rodcal.predict(native, joints, tool, aligned, tell), own)
 
 
 def simulate(
@@ -270,9 +282,9 @@ def simulate(
         data, files = _rodcal.simulate(
             model,
             as_rod(rod)._native,
-            seed,
-            poses,
-            validation,
+            whole("seed", seed),
+            whole("poses", poses),
+            whole("validation", validation),
             r_rod,
             table,
             None if directory is None else os.fspath(directory),
@@ -295,7 +307,7 @@ def design_rod(
     count: int | None = None,
     progress: Progress = False,
 ) -> RodDesignResult:
-    """The rods that none betters: ``design`` is a design file or a dict with its keys.
+    """The Pareto front of rods: ``design`` is a design file or a dict with its keys.
 
     ``catalogue`` is a table of tubes in place of a file. ``base`` is a rod to compare with,
     ``samples`` looks at so many combinations only, ``refine`` betters a design of the front (from 1)
@@ -315,6 +327,10 @@ def design_rod(
     space = space_of(design, catalogue)
     native = None if campaign is None else as_campaign(campaign, plan=True)._native
     other = None if base is None else as_rod(base)._native
+    samples, refine = maybe_whole("samples", samples), maybe_whole("refine", refine)
+    seed, count = whole("seed", seed), maybe_whole("count", count)
+    if count is not None and native is None:
+        raise InputError("`count` is poses of a campaign, and there is none", expected="a `campaign`")
     with Told(progress, "looking at rods") as tell:
         answer = _rodcal.design_rod(space, other, samples, refine, refine_goal, seed, native, count, None, tell)
     warn(answer.warnings)
@@ -373,6 +389,7 @@ def design_poses(
         "has_table": table_mm != "none",
     }
     expected = _expected(native, noise_um, repeatability_um, instrument_um, at, volume_mm)
+    count, generate, seed = whole("count", count), whole("generate", generate), whole("seed", seed)
     with Told(progress, "looking for poses") as tell:
         answer = _rodcal.design_poses(
             native, count, criterion, table, generate, limits, mode, expected, seed, tell
@@ -383,7 +400,7 @@ def design_poses(
 
 def design_rig(
     rod: RodLike,
-    between: Iterable[str] = (),
+    between: Iterable[str] | str = (),
     *,
     r_rod_width_percent: float | None = None,
     odds: float = 20.0,
@@ -399,7 +416,7 @@ def design_rig(
     """
     native = as_rod(rod)._native
     answer = _rodcal.design_rig(
-        native, list(between), r_rod_width_percent, odds, max_load_n, noise_um, at_tip
+        native, names("between", between), r_rod_width_percent, odds, max_load_n, noise_um, at_tip
     )
     warn(answer.warnings)
     return RigDesignResult(answer)
@@ -430,6 +447,7 @@ def forecast(
     native = as_campaign(campaign, plan=True)._native
     expected = _expected(native, noise_um, repeatability_um, instrument_um, at, volume_mm)
     natives = [as_rod(rod)._native for rod in rods]
+    count, seed = maybe_whole("count", count), whole("seed", seed)
     with Told(progress, "forecasting") as tell:
         answer = _rodcal.forecast(native, natives, count, expected, seed, tell)
     warn(answer.warnings)
@@ -450,5 +468,5 @@ def _expected(
         "repeatability_um": repeatability_um,
         "instrument_um": instrument_um,
         "at": None if at is None else joint_table(at, campaign.columns, "<at>"),
-        "volume_mm": None if volume_mm is None else [float(x) for x in volume_mm],
+        "volume_mm": None if volume_mm is None else numbers("volume_mm", volume_mm, 6),
     }

@@ -432,6 +432,8 @@ def joint_array(joints: Any, count: int, name: str) -> Array:
         plain = np.array(joints.data, dtype=np.float64)
         plain[np.ma.getmaskarray(joints)] = np.nan
         joints = plain
+    if np.iscomplexobj(joints):
+        raise InputError(f"{name} is complex, expected real numbers", found="complex", expected="real numbers")
     array = np.atleast_2d(np.asarray(joints, dtype=np.float64))
     if array.ndim != 2 or array.shape[1] != count:
         found, expected = f"of shape {np.shape(joints)}", f"of shape (n, {count}): a column for each joint"

@@ -21,6 +21,7 @@ from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
 
 from . import _rodcal
+from ._arguments import shown
 from ._errors import InputError, NotApplicableError, RodcalWarning
 from .inputs import Campaign, PathLike, Robot
 from .results import CalibrationResult
@@ -57,9 +58,9 @@ def figaroh_campaign(
         found, expected = f"{len(markers) if isinstance(markers, list) else 'no'} markers", f"marker {marker}"
         raise _wrong(name, "measurements.markers", found, expected)
     seen = markers[marker - 1].get("measurable_dof", [True] * 3) if isinstance(markers[marker - 1], dict) else []
-    if list(seen[:3]) != [True] * 3:
-        raise _wrong(name, "measurable_dof", repr(seen), "[true, true, true, …]: a marker's position")
-    if any(seen[3:]):
+    if not isinstance(seen, list) or any(part is not True for part in seen[:3]) or len(seen) < 3:
+        raise _wrong(name, "measurable_dof", shown(seen), "[true, true, true, …]: a marker's position")
+    if any(part is True for part in seen[3:]):
         warnings.warn(f"{name}: orientations of the marker are not used", RodcalWarning, stacklevel=2)
     if len(markers) > 1:
         words = f"{name}: marker {marker} of {len(markers)} is taken, the others are not"
@@ -69,13 +70,15 @@ def figaroh_campaign(
     text = _rodcal.read_text(urdf)
     tip = kinematics.get("tool_frame")
     if not isinstance(tip, str) or not tip:
-        raise _wrong(name, "kinematics.tool_frame", repr(tip), "a link of the URDF")
+        raise _wrong(name, "kinematics.tool_frame", shown(tip), "a link of the URDF")
     base, tip, joints = _chain(os.fspath(urdf), text, kinematics.get("base_frame", "universe"), tip)
     robot = Robot.read(urdf, base_link=base, tip_link=tip)
     active = _table(name, task, "joints", optional=True).get("active_joints") or []
+    if not isinstance(active, list) or not all(isinstance(joint, str) for joint in active):
+        raise _wrong(name, "joints.active_joints", shown(active), "names of joints in a list")
     unknown = [joint for joint in active if joint not in joints]
     if unknown:
-        raise _wrong(name, "joints.active_joints", repr(unknown[0]), f"joints from {base} to {tip}: {', '.join(joints)}")
+        raise _wrong(name, "joints.active_joints", shown(unknown[0]), f"joints from {base} to {tip}: {', '.join(joints)}")
 
     keys: dict[str, Any] = {"robot": robot}
     poses = _table(name, task, "measurements", "poses", optional=True)
@@ -190,7 +193,7 @@ def _yaml(file: pathlib.Path, above: tuple[pathlib.Path, ...] = ()) -> Mapping[s
     if extends is None:
         return content
     if not isinstance(extends, str):
-        raise _wrong(name, "extends", repr(extends), "the name of a file")
+        raise _wrong(name, "extends", shown(extends), "the name of a file")
     places = [file.parent / extends]
     if extends.startswith("templates/"):
         places = [folder / extends for folder in list(file.absolute().parents)[:3]]
@@ -219,8 +222,8 @@ def _table(name: str, config: Mapping[str, Any], *keys: str, optional: bool = Fa
     if found is None and optional:
         return {}
     if not isinstance(found, Mapping):
-        shown = "missing" if found is None else f"{found!r:.50}"
-        raise _wrong(name, ".".join(keys), shown, "a table, as FIGAROH's unified configuration has it")
+        is_found = "missing" if found is None else shown(found)
+        raise _wrong(name, ".".join(keys), is_found, "a table, as FIGAROH's unified configuration has it")
     return found
 
 
@@ -230,13 +233,13 @@ def _pose(name: str, key: str, pose: Any) -> dict[str, list[float]] | None:
         return None
     numbers = [x for x in pose if isinstance(x, (int, float)) and math.isfinite(x)] if isinstance(pose, list) else []
     if len(numbers) != 6 or len(pose) != 6:
-        raise _wrong(name, key, f"{pose!r:.80}", "[x, y, z, roll, pitch, yaw] in m and rad")
+        raise _wrong(name, key, shown(pose), "[x, y, z, roll, pitch, yaw] in m and rad")
     return {"xyz_mm": [x * 1e3 for x in numbers[:3]], "rpy_deg": [math.degrees(x) for x in numbers[3:]]}
 
 
 def _found(name: str, key: str, file: Any, folders: list[pathlib.Path]) -> pathlib.Path:
     if not isinstance(file, str) or "${" in file:
-        raise _wrong(name, key, f"{file!r:.80}", "the name of a CSV")
+        raise _wrong(name, key, shown(file), "the name of a CSV")
     places = [folder / file for folder in folders]
     return next((place for place in places if place.exists()), places[0])
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 
 from . import _rodcal
-from ._errors import in_python
+from ._errors import InputError, in_python
 from .inputs import Array, Campaign, PathLike, Robot
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def _as(kind: Any, value: Any, name: str) -> Any:
     if value is None:
         raise TypeError(f"the answer has no {name}")
     if kind == Array:
-        return np.array(value, dtype=np.float64)
+        return _kept(np.array(value, dtype=np.float64))
     if origin is list:
         return [_as(arguments[0], item, name) for item in value]
     if origin is tuple:
@@ -70,6 +70,12 @@ def _as(kind: Any, value: Any, name: str) -> Any:
     if isinstance(kind, type) and issubclass(kind, Record):
         return kind(value)
     return float(value) if kind is float else value
+
+
+def _kept(array: Array) -> Array:
+    """An answer is what it was: whoever wants to change it copies it."""
+    array.flags.writeable = False
+    return array
 
 
 class Result(Record):
@@ -126,7 +132,10 @@ class Result(Record):
         Files that rodcal did not write, or that were changed since, stay (`FileError`), unless
         ``force``.
         """
-        self._answer.write(os.fspath(directory), force)
+        place = os.fspath(directory)
+        if not place:
+            raise InputError("`directory` is '', expected a folder's name", found="''", expected="a folder's name")
+        self._answer.write(place, force)
 
     def _rows(self) -> list[dict[str, Any]]:
         raise NotImplementedError
@@ -151,12 +160,13 @@ def _flat(row: Mapping[str, Any], before: str = "") -> dict[str, Any]:
     return flat
 
 
-def _frame(rows: list[dict[str, Any]]) -> pandas.DataFrame:
+def _frame(table: list[dict[str, Any]] | dict[str, Any]) -> pandas.DataFrame:
+    """Of rows, or of columns."""
     try:
         import pandas
     except ImportError as missing:
         raise ImportError("to_dataframe needs pandas: pip install pandas") from missing
-    return pandas.DataFrame([_flat(row) for row in rows])
+    return pandas.DataFrame([_flat(row) for row in table] if isinstance(table, list) else table)
 
 
 class Contribution(Record):
@@ -328,7 +338,7 @@ class CalibrationResult(Calibrated, Result):
 
     def __init__(self, answer: _rodcal.Answer, arrays: dict[str, Array], campaign: _rodcal.Campaign) -> None:
         Result.__init__(self, answer)
-        self._arrays = arrays
+        self._arrays = {name: _kept(array) for name, array in arrays.items()}
         self._links = campaign.links
 
     @property
@@ -469,12 +479,14 @@ class PredictionResult(Result):
     """Tips at poses, in {0}: arrays of shape (n, 3) and (n,). Report and JSON are made when asked for."""
 
     _predicted: _rodcal.Predicted
+    _robot: Robot
 
-    def __init__(self, predicted: _rodcal.Predicted) -> None:
+    def __init__(self, predicted: _rodcal.Predicted, robot: Robot) -> None:
         self._predicted = predicted
+        self._robot = robot
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return PredictionResult, (self._predicted,)
+        return _predicted_again, (self._robot, *self._predicted.parts())
 
     @functools.cached_property
     def _answer(self) -> _rodcal.Answer:  # type: ignore[override]
@@ -483,24 +495,36 @@ class PredictionResult(Result):
     @functools.cached_property
     def tips_mm(self) -> Array:
         """The tips in {0}, mm, shape (n, 3)."""
-        return self._predicted.tips_mm
+        return _kept(self._predicted.tips_mm)
 
     @functools.cached_property
     def sd_mm(self) -> Array | None:
         """Standard deviations of their coordinates, mm, shape (n, 3), where the robot knows them."""
-        return self._predicted.sd_mm
+        sd = self._predicted.sd_mm
+        return None if sd is None else _kept(sd)
 
     @functools.cached_property
     def ratios(self) -> Array | None:
         """How many times more uncertain than where it was calibrated each pose is, shape (n,)."""
-        return self._predicted.ratios
+        ratios = self._predicted.ratios
+        return None if ratios is None else _kept(ratios)
 
     def __repr__(self) -> str:
         return f"<PredictionResult: {len(self.tips_mm)} poses>"
 
-    def _rows(self) -> list[dict[str, Any]]:
-        poses: list[dict[str, Any]] = self.to_dict()["poses"]
-        return poses
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Pose, tip and standard deviation (mm), ratio: straight from the arrays. Needs pandas."""
+        columns: dict[str, Any] = {"pose": np.arange(1, len(self.tips_mm) + 1).astype(str)}
+        columns.update((f"{axis}_mm", self.tips_mm[:, k]) for k, axis in enumerate("xyz"))
+        if self.sd_mm is not None:
+            columns.update((f"sd_{axis}_mm", self.sd_mm[:, k]) for k, axis in enumerate("xyz"))
+        if self.ratios is not None:
+            columns["ratio"] = self.ratios
+        return _frame(columns)
+
+
+def _predicted_again(robot: Robot, joints: Array, tool: tuple[float, float, float], aligned: bool) -> PredictionResult:
+    return PredictionResult(_rodcal.Predicted.restored(robot._native, joints, tool, aligned), robot)
 
 
 class Design(Record):
@@ -517,7 +541,7 @@ class Design(Record):
 
 
 class RodDesignResult(Result):
-    """The rods that none betters, best in the first goal first."""
+    """The Pareto front, best in the first goal first."""
 
     evaluated: int
     feasible: int

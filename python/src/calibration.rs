@@ -159,6 +159,34 @@ impl Predicted {
         self.prediction.ratios.clone().map(|ratios| ratios.into_pyarray(py))
     }
 
+    /// What `restored` takes beside the robot: joint values (rad or m), tool (m), whether aligned.
+    #[allow(clippy::type_complexity)]
+    fn parts<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray2<f64>>, (f64, f64, f64), bool)> {
+        let Prediction { tips, tool, is_aligned, .. } = &self.prediction;
+        let width = self.robot.joints.len();
+        let values: Vec<f64> = tips.iter().flat_map(|(query, ..)| query.joints.iter().copied()).collect();
+        let tool = (tool.x, tool.y, tool.z);
+        Ok((values.into_pyarray(py).reshape([tips.len(), width])?, tool, *is_aligned))
+    }
+
+    /// The same tips again, of one that was pickled.
+    #[staticmethod]
+    fn restored(
+        py: Python<'_>,
+        robot: &Bound<'_, Robot>,
+        joints: PyReadonlyArray2<'_, f64>,
+        tool: [f64; 3],
+        aligned: bool,
+    ) -> PyResult<Predicted> {
+        let robot = robot.get().robot.clone();
+        let joints = joints.as_array();
+        let poses = joints.rows().into_iter().enumerate();
+        let poses =
+            poses.map(|(row, own)| PredictionQuery::new((row + 1).to_string(), own.to_vec())).collect();
+        let prediction = Prediction::new(&robot, tool.into(), poses, aligned).or_raise(py)?;
+        Ok(Predicted { robot, prediction, answer: OnceLock::new() })
+    }
+
     fn answer(&self) -> Answer {
         let answer =
             self.answer.get_or_init(|| answer::predicted(self.robot.clone(), self.prediction.clone()));

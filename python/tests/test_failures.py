@@ -56,6 +56,19 @@ WRONG: list[tuple[type[rodcal.Error], Callable[[], Any]]] = [
     (rodcal.InputError, lambda: rodcal.Robot.read("builtin:nobody")),
     (rodcal.InputError, lambda: rodcal.compliance("rods/5.toml", "exact")),  # type: ignore[arg-type]
     (rodcal.InputError, lambda: rodcal.compliance("rods/5.toml", elements=0)),
+    (rodcal.InputError, lambda: rodcal.compliance("rods/5.toml", elements=-1)),
+    (rodcal.InputError, lambda: rodcal.compliance("rods/5.toml", elements=2.5)),  # type: ignore[arg-type]
+    (rodcal.InputError, lambda: rodcal.compare(TX90, seed=2**70)),
+    (rodcal.InputError, lambda: rodcal.simulate("rods/5.toml", poses=-1)),
+    (rodcal.InputError, lambda: rodcal.predict("builtin:tx90", [[0] * 6], tool_mm=[1, 2])),
+    (rodcal.InputError, lambda: rodcal.predict("builtin:tx90", [[0] * 6], tool_mm=5)),  # type: ignore[arg-type]
+    (rodcal.InputError, lambda: rodcal.predict("builtin:tx90", [[1j] * 6])),
+    (rodcal.InputError, lambda: rodcal.design_poses(TX90, 20, volume_mm=[0, 1])),
+    (rodcal.InputError, lambda: rodcal.design_rig("rods/5.toml", 5)),  # type: ignore[arg-type]
+    (rodcal.InputError, lambda: rodcal.design_rig("rods/5.toml", "frictio")),
+    (rodcal.InputError, lambda: rodcal.design_rod("examples/design.toml", count=5)),
+    (rodcal.InputError, lambda: rodcal.compliance("rods/5.toml").write("")),
+    (rodcal.InputError, lambda: rodcal.Rod({"name": "\ud800"})),
     (rodcal.InputError, lambda: rodcal.compliance("rods/5.toml", contact_force_n=float("nan"))),
     (rodcal.InputError, lambda: rodcal.calibrate(TX90, folds=1)),
     (rodcal.InputError, lambda: rodcal.compare(TX90, draws=3)),

@@ -173,6 +173,17 @@ def test_results_can_be_pickled() -> None:
     assert again.to_html() == fitted.to_html()
 
 
+def test_predictions_can_be_pickled_and_are_a_frame() -> None:
+    made = rodcal.predict("builtin:tx90", [[0, 10, 80, 5, 6, 7], [5, 10, 80, 5, 6, 7]], tool_mm=[10, 0, 200])
+    again = pickle.loads(pickle.dumps(made))
+    assert (again.tips_mm == made.tips_mm).all() and again.to_dict() == made.to_dict()
+    frame = made.to_dataframe()
+    assert list(frame.columns[:4]) == ["pose", "x_mm", "y_mm", "z_mm"] and isinstance(frame, pandas.DataFrame)
+    assert frame["z_mm"].tolist() == made.tips_mm[:, 2].tolist()
+    with pytest.raises(ValueError, match="read-only"):
+        made.tips_mm[:] = 0.0
+
+
 def test_a_diagnosis_of_a_campaign_in_memory_is_applied() -> None:
     table: dict[str, Any] = dict(_columns("campaigns/tx90-5/measurements.csv"))
     table["q4_deg"] = np.deg2rad(_numbers(table["q4_deg"]))

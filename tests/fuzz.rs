@@ -14,10 +14,11 @@ mod mutation;
 mod round_trips;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use rodcal::calibration::Campaign;
-use rodcal::design::DesignSpace;
+use rodcal::design::{DesignSpace, Search, Searched};
 use rodcal::diagnosis::rig::OwnEffect;
 use rodcal::files::text_of_bytes;
 use rodcal::report::runs::Run;
@@ -25,6 +26,9 @@ use rodcal::rig::readings::Readings;
 use rodcal::robot::{Robot, corrections_from_csv};
 use rodcal::rod::Rod;
 use rodcal::{Error, Result};
+use rodcal_trial::answers;
+use rodcal_trial::archive::Manifest;
+use rodcal_trial::rig::residuals;
 
 use self::corpus::CORPUS;
 use self::mutation::mutated;
@@ -32,7 +36,7 @@ use self::mutation::mutated;
 /// A reader by its name: what it says of bytes.
 type Reader = (&'static str, fn(Vec<u8>) -> Result<()>);
 
-const READERS: [Reader; 11] = [
+const READERS: [Reader; 15] = [
     ("rod", |bytes| {
         let rod = Rod::from_toml("f", &text_of_bytes("f", bytes)?)?;
         let written = rod.to_toml(&[]);
@@ -86,7 +90,22 @@ const READERS: [Reader; 11] = [
     }),
     ("corrections", |bytes| corrections_from_csv("f", &text_of_bytes("f", bytes)?, 6).map(drop)),
     ("result", |bytes| Run::from_text("d", "f", &text_of_bytes("f", bytes)?).map(drop)),
+    ("kept search", |bytes| {
+        let open = |name: &str| Ok((name.to_owned(), corpus::TUBES.to_owned()));
+        let space = DesignSpace::from_toml("d", corpus::DESIGN, &open)?;
+        Search::from_text(&space, Searched::All, "f", &text_of_bytes("f", bytes)?).map(drop)
+    }),
+    ("manifest", |bytes| in_folder("manifest.json", &bytes, |folder| Manifest::read(folder).map(drop))),
+    ("answers", |bytes| in_folder("f", &bytes, |folder| answers::read(&folder.join("f")).map(drop))),
+    ("residuals", |bytes| in_folder("f", &bytes, |folder| residuals::read(&folder.join("f")).map(drop))),
 ];
+
+/// What takes a file alone: one with these bytes, in a folder of its own.
+fn in_folder(name: &str, bytes: &[u8], read: impl Fn(&Path) -> Result<()>) -> Result<()> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join(name), bytes).unwrap();
+    read(folder.path())
+}
 
 /// Every reader reads an input; what is said of it lies in a file that it names.
 fn read(name_of_input: &str, bytes: &[u8]) {
@@ -117,7 +136,7 @@ fn whatever_a_file_holds_it_is_read_or_refused() {
     let (start, mut n) = (Instant::now(), number("RODCAL_FUZZ_FROM").unwrap_or(0));
     let (first, most) = (n, number("RODCAL_FUZZ_INPUTS").unwrap_or(u64::MAX));
     while start.elapsed() < time && n - first < most {
-        read(&format!("input {n}"), &mutated(&CORPUS, n));
+        read(&format!("input {n}"), &mutated(&*CORPUS, n));
         n += 1;
     }
     assert!(n - first > 20, "only {} inputs", n - first);
@@ -127,7 +146,7 @@ fn whatever_a_file_holds_it_is_read_or_refused() {
 #[test]
 fn no_word_of_a_file_makes_a_message_long() {
     let long = "x".repeat(5000);
-    for text in CORPUS {
+    for text in CORPUS.iter() {
         let is_end = |c: char| !c.is_alphanumeric() && c != '_';
         let mut at = 0;
         for word in text.split(is_end) {

@@ -49,9 +49,11 @@ def names(name: str, value: Any) -> list[str]:
     """Several texts; one alone is a list of one."""
     if isinstance(value, str):
         return [value]
-    if not isinstance(value, Iterable) or not all(isinstance(item, str) for item in (value := list(value))):
+    found = list(value) if isinstance(value, Iterable) else [None]
+    texts = [item for item in found if isinstance(item, str)]
+    if len(texts) < len(found):
         raise wrong(name, shown(value), "names in a list")
-    return value
+    return texts
 
 
 def shown(value: Any) -> str:
@@ -63,9 +65,9 @@ def shown(value: Any) -> str:
         except ValueError:  # integers of thousands of digits have no text
             return f"a {kind}"
         return text if len(text) <= 40 else f"{text[:39]}…"
-    if isinstance(value, (list, tuple, dict, np.ndarray)):
-        return f"a {kind} of {len(value) if np.ndim(value) or not isinstance(value, np.ndarray) else 1}"
-    return f"a {kind}"
+    if isinstance(value, np.ndarray):
+        return f"an array of shape {value.shape}"
+    return f"a {kind} of {len(value)}" if isinstance(value, (list, tuple, dict)) else f"a {kind}"
 
 
 def wrong(name: str, found: str, expected: str) -> InputError:

@@ -8,6 +8,7 @@ use super::figure::{Design, Figures};
 use super::nearest::{Nearest, Relaxed};
 use super::search::{Search, Searched};
 use super::space::DesignSpace;
+use crate::delimited::quoted;
 use crate::error::{Error, Place, Result};
 
 /// First line of the text.
@@ -100,12 +101,12 @@ impl<'s> Search<'s> {
         };
         let head = lines.next()?;
         if head != HEAD {
-            return Err(another(1, format!("{head:?}"), &format!("a search kept by this program, {HEAD:?}")));
+            return Err(another(1, quoted(head), &format!("a search kept by this program, {HEAD:?}")));
         }
         let sampled = lines.next()?;
         if sampled != asked {
             let expected = format!("the same rods to look at, {asked:?}");
-            return Err(another(2, format!("{sampled:?}"), &expected));
+            return Err(another(2, quoted(sampled), &expected));
         }
         let content = text.split_once(&format!("\n{CONTENT}\n")).map_or("", |(_, content)| content);
         if content != space.content {
@@ -119,7 +120,11 @@ impl<'s> Search<'s> {
         total.impossible = lines.numbers()?;
         let [count] = lines.numbers()?;
         for _ in 0..count {
-            total.front.offer(design_of(&lines.numbers::<9>()?));
+            let design = design_of(&lines.numbers::<9>()?);
+            if design.index >= space.combinations() {
+                return Err(lines.error());
+            }
+            total.front.offer(design);
         }
         let mut nearest = Nearest::default();
         let [count] = lines.numbers()?;

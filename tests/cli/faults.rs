@@ -46,7 +46,7 @@ fn lasting(mut listing: BTreeMap<String, Vec<u8>>) -> BTreeMap<String, Vec<u8>> 
 }
 
 /// What stands there before: rods, a robot, a campaign, poses, a small search and an old report.
-fn prepared() -> Sandbox {
+fn prepared(line: &str) -> Sandbox {
     let sandbox = Sandbox::new();
     let design = "[geometry]\nl1_mm = [150]\nl2_mm = [400, 525]\n[catalogue]\nfile = \"builtin\"\n\
         [objectives]\nminimise = [\"c_rod_um\", \"mass_g\"]\n";
@@ -54,13 +54,20 @@ fn prepared() -> Sandbox {
     sandbox.write("poses.csv", "pose,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n1,0,10,80,5,6,7\n");
     sandbox.run("compliance rods/5.toml --out old").succeeded();
     sandbox.run("compliance rods/2.toml --out older").succeeded();
+    if line.contains("sealed") {
+        sandbox.run("trial make sealed --seed 3 --cases 1 --rig").succeeded();
+    }
+    if line.contains("trial score") {
+        sandbox.run("trial answer sealed").succeeded();
+    }
     sandbox
 }
 
-/// Commands that write, all of them but those that take longer than all these together
-/// (`compare`, `diagnose calibration`): these deliver as the others do. With each, operations of
-/// the disk that are struck.
-const WRITING: [(&str, &[usize]); 11] = [
+/// Files in which a long run keeps what it has, to go on from.
+const KEPT: [&str; 2] = ["kept", "sealed/answers.jsonl"];
+
+/// Commands that write. With each, operations of the disk that are struck.
+const WRITING: [(&str, &[usize]); 15] = [
     ("compliance rods/2.toml --out old", &[1, 2, 5, 18, 35]),
     (SIMULATE, &[1, 3, 7, 18]),
     ("design rod design.toml --resume kept --out designs", &[1, 2, 4, 9, 42]),
@@ -72,6 +79,10 @@ const WRITING: [(&str, &[usize]); 11] = [
     ("design poses campaigns/tx90-5/campaign.toml --count 20 --generate 60 --out old", &[2, 12]),
     ("diagnose rig rods/5.toml stiffness_data/5.csv --apply --out old", &[5, 27]),
     ("compare-runs old older --out runs", &[1, 9]),
+    ("compare campaigns/tx90-5/campaign.toml --draws 50 --out old", &[1, 14]),
+    ("diagnose calibration campaigns/tx90-5/campaign.toml --apply --out old", &[3, 19]),
+    ("trial answer sealed", &[1, 2]),
+    ("trial score sealed --out old", &[2, 13]),
 ];
 
 /// Builds that tests are made in read faults from the environment; `crates/base` and `crates/trial`
@@ -92,12 +103,12 @@ fn a_fault_leaves_the_old_files_or_the_new_ones() {
 /// A command whose disk fails, or that is killed, at each of these operations.
 fn struck(line: &str, counts: &[usize]) {
     let words: Vec<&str> = line.split_whitespace().collect();
-    let whole = prepared();
+    let whole = prepared(line);
     let old = whole.listing();
     whole.run(line).succeeded();
     let new = whole.listing();
     for (kind, count) in ["fail", "kill"].into_iter().flat_map(|kind| counts.iter().map(move |n| (kind, n))) {
-        let sandbox = prepared();
+        let sandbox = prepared(line);
         let fault = format!("{kind} {count}");
         let output = sandbox.command(&words).env("RODCAL_FAULT", &fault).output().unwrap();
         let (status, mut after) = (output.status.code(), sandbox.listing());
@@ -106,7 +117,9 @@ fn struck(line: &str, counts: &[usize]) {
             ("fail", Some(2)) => {
                 assert!(stderr.contains("error: cannot "), "{line}, {fault}: {stderr}");
                 // a search is kept to go on from
-                after.retain(|name, _| name != "kept");
+                after.retain(|name, _| !KEPT.contains(&name.as_str()));
+                let mut old = old.clone();
+                old.retain(|name, _| !KEPT.contains(&name.as_str()));
                 assert!(after == old, "{line}, {fault}: {:?}", after.keys());
             }
             ("kill", Some(137)) => {
@@ -114,7 +127,7 @@ fn struck(line: &str, counts: &[usize]) {
                 let is_either = |set: &BTreeMap<String, Vec<u8>>| {
                     there.iter().all(|(name, bytes)| {
                         name.ends_with('/')
-                            || name == "kept"
+                            || KEPT.contains(&name.as_str())
                             || name.starts_with("t.key")
                             || set.get(name) == Some(bytes)
                     })

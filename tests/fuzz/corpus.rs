@@ -1,5 +1,9 @@
 //! What the mutations begin with: small, and with every key or column that a reader knows.
 
+use std::sync::LazyLock;
+
+use rodcal::design::{DesignSpace, Search, Searched};
+
 pub const ROD: &str = include_str!("../bad_rods/good.toml");
 const ROBOT: &str = include_str!("../bad_robots/good.toml");
 const URDF: &str = include_str!("../bad_robots/good.urdf");
@@ -23,5 +27,35 @@ const EFFECTS: &str = "[[effect]]\nname = \"foot\"\nwords = \"a rubber foot\"\np
     law = \"a_um*(1 - exp(-F/b_n))\"\nparameter = [{ name = \"a_um\", size = 20 }, \
     { name = \"b_n\", neutral = 5, size = 2, low = 0.5 }]\n";
 
-pub const CORPUS: [&str; 11] =
-    [ROD, ROBOT, URDF, DESIGN, TUBES, READINGS, CAMPAIGN, POSES, CORRECTIONS, RESULT, EFFECTS];
+/// A search of [`DESIGN`], as it is kept.
+static KEPT: LazyLock<String> = LazyLock::new(|| {
+    let space = DesignSpace::from_toml("d", DESIGN, &|name| Ok((name.to_owned(), TUBES.to_owned()))).unwrap();
+    let mut search = Search::new(&space, Searched::All).unwrap();
+    search.go_on(&|_| {}).unwrap();
+    search.to_text()
+});
+const MANIFEST: &str = "{\"made_by\": \"rodcal 0.1.0\", \"cases\": 1, \"key_sha256\": \"00\", \"files\": \
+    {\"rig/case-0001/rod.toml\": \"11\", \"rig/case-0001/readings.csv\": \"22\"}}";
+const ANSWERS: &str = "{\"case\":\"rig/case-0001\",\"answer\":{\"verdict\":\"consistent\",\"findings\":[]},\
+    \"sha256\":{\"rig/case-0001/rod.toml\":\"11\"}}\n";
+const RESIDUALS: &str = "row,residual\n1,0.5\n2,-1.25\n3,0\n4,2e-1\n5,3\n6,1\n7,-1\n8,2\n9,-2\n10,0.1\n";
+
+pub static CORPUS: LazyLock<[&str; 15]> = LazyLock::new(|| {
+    [
+        ROD,
+        ROBOT,
+        URDF,
+        DESIGN,
+        TUBES,
+        READINGS,
+        CAMPAIGN,
+        POSES,
+        CORRECTIONS,
+        RESULT,
+        EFFECTS,
+        &KEPT,
+        MANIFEST,
+        ANSWERS,
+        RESIDUALS,
+    ]
+});

@@ -26,6 +26,7 @@ use serde::{Deserialize, Serialize};
 pub use self::make::{Plan, StagedTrial, make};
 
 use super::ground_truth::GroundTruth;
+use rodcal_base::delimited::quoted;
 use rodcal_base::error::{Error, Place, Result};
 use rodcal_base::files;
 use rodcal_base::limits;
@@ -134,7 +135,7 @@ impl Manifest {
         };
         if let Some(name) = manifest.files.keys().find(|name| !is_of_a_case(name)) {
             let expected = "files of cases, such as rig/case-0001/rod.toml".to_owned();
-            return Err(wrong(format!("it names {name:?}"), expected));
+            return Err(wrong(format!("it names {}", quoted(name)), expected));
         }
         let count = manifest.case_names().len();
         limits::check(&path.display().to_string(), count, limits::TRIAL_CASES, "cases")?;

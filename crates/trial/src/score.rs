@@ -20,6 +20,7 @@ mod verdict;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use rodcal_base::delimited::quoted;
 use rodcal_base::error::{Error, Place, Result};
 
 pub use self::counterfactual::Counterfactual;
@@ -92,7 +93,7 @@ pub fn open(directory: &Path, key: &Path, answers: &Path) -> Result<Sealed> {
     };
     for answer in &given {
         if cases.binary_search(&answer.case).is_err() {
-            let found = format!("an answer to {:?}, which is no case of this trial", answer.case);
+            let found = format!("an answer to {}, which is no case of this trial", quoted(&answer.case));
             return Err(wrong(
                 found,
                 "answers to the cases of the manifest",

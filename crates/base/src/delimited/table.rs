@@ -2,7 +2,7 @@
 
 use super::numbers::{Dialect, LARGEST, number_hint, parse_number};
 use super::split::{Cell, separator_of, split};
-use super::written::quoted;
+use super::written::{quoted, short};
 use crate::error::{Error, Place, Result};
 use crate::limits;
 
@@ -90,7 +90,7 @@ impl Table {
     pub fn columns_found(&self) -> String {
         /// More names than these hide what they are listed for.
         const MOST: usize = 12;
-        let names: Vec<&str> = self.columns().take(MOST).collect();
+        let names: Vec<String> = self.columns().take(MOST).map(short).collect();
         let rest = match self.header.len().saturating_sub(MOST) {
             0 => String::new(),
             more => format!(" and {more} more"),

@@ -59,10 +59,15 @@ pub(super) fn is_formula(text: &str) -> bool {
 
 /// `text` between quotes, shortened and with control characters made visible, for a message.
 pub fn quoted(text: &str) -> String {
+    format!("\"{}\"", short(text))
+}
+
+/// The same without quotes.
+pub(super) fn short(text: &str) -> String {
     const LONGEST: usize = 40;
     let short: String = text.chars().take(LONGEST).collect();
     let more = if text.chars().nth(LONGEST).is_some() { "…" } else { "" };
-    format!("\"{}{more}\"", visible(&short))
+    format!("{}{more}", visible(&short))
 }
 
 /// `text` with everything escaped that a terminal would obey instead of showing it: control

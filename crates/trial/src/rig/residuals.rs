@@ -20,8 +20,9 @@ pub fn read(path: &Path) -> Result<Vec<f64>> {
     let name = path.display().to_string();
     let table = Table::parse(&name, &files::read_text(path)?, |column| column == COLUMN)?;
     if !table.has(COLUMN) {
-        let found = format!("the columns {}", table.columns().collect::<Vec<_>>().join(", "));
-        return Err(table.header_error(COLUMN, found, format!("a column `{COLUMN}`"), None));
+        let found = format!("there is no column `{COLUMN}`");
+        let expected = "residuals of a recording, in any unit".to_owned();
+        return Err(table.header_error(COLUMN, found, expected, Some(table.columns_found())));
     }
     let numbers: Vec<f64> = table.rows().map(|row| row.required_number(COLUMN)).collect::<Result<_>>()?;
     let n = numbers.len() as f64;

@@ -11,6 +11,7 @@
 //! - [`text`]: a report for the terminal · [`table`]: tables to text, HTML, Markdown, CSV ·
 //!   [`html`]: the page
 
+mod arms;
 mod axes;
 pub mod calibration;
 pub mod chart;
@@ -30,6 +31,7 @@ mod labels;
 mod legend;
 mod length;
 mod marks;
+mod method;
 pub mod pictures;
 mod plot;
 pub mod poses;

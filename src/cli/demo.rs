@@ -79,8 +79,11 @@ pub fn run() -> Result<Outcome> {
             fitted.clone_from(&rig_report.headline);
             rod_page.headline = format!("{} {}", rod_report.headline, rig_report.headline);
             rod_page.cards = rod_report.cards.into_iter().chain(rig_report.cards).collect();
-            rod_page.sections = shown(rod_report.sections, &["shape-force"]);
-            rod_page.sections.extend(shown(rig_report.sections, &["load-deflection", "waterfall"]));
+            let drawn = shown(rod_report.sections, &["shape-force"]);
+            let measured = shown(rig_report.sections, &["load-deflection", "waterfall"]);
+            // side by side where there is room
+            let blocks = drawn.into_iter().chain(measured).flat_map(|section| section.blocks).collect();
+            rod_page.sections = vec![Section::new(format!("Rod {SHOWN}, as drawn and as measured"), blocks)];
         } else if rod.name == DIAGNOSED {
             add(&mut why_page, &format!("Rod {DIAGNOSED}"), diagnosed(&readings, Some(&rod))?);
         }
@@ -161,11 +164,11 @@ fn links() -> Vec<PageLink> {
     PAGES.into_iter().map(of_page).collect()
 }
 
-/// The sections that have one of these pictures, with the first of each and with their tables,
-/// folded.
+/// The sections that have one of these pictures, with the first of each and their words, and the
+/// first table of all, folded: a story, of which the commands have the rest.
 fn shown(sections: Vec<Section>, pictures: &[&str]) -> Vec<Section> {
     let mut left: Vec<&str> = pictures.to_vec();
-    let mut kept = Vec::new();
+    let (mut kept, mut has_table) = (Vec::new(), false);
     for mut section in sections {
         section.blocks.retain_mut(|block| match block {
             Block::Figure(figure) => {
@@ -174,7 +177,7 @@ fn shown(sections: Vec<Section>, pictures: &[&str]) -> Vec<Section> {
             }
             Block::Table(table) => {
                 table.is_folded = true;
-                true
+                !std::mem::replace(&mut has_table, true)
             }
             _ => true,
         });

@@ -10,6 +10,7 @@ pub(super) use figures::{convergence, mode_residuals};
 use serde_json::{Map, Value, json};
 
 use super::length::length;
+use super::method;
 use super::{Block, Report, Section};
 use crate::calibration::campaign::{Recording, Refit, Station, Targets};
 use crate::calibration::{
@@ -211,6 +212,7 @@ pub fn report(
         warnings: warnings(campaign, calibration),
         sections: sections(campaign, calibration, cross_validation),
         cards: cards::cards(campaign, calibration, cross_validation),
+        method: method::told(method::CALIBRATION),
         ..Report::default()
     }
 }
@@ -303,6 +305,7 @@ pub fn sections(
                 Block::Table(tables::groups(recording, calibration)),
                 Block::Figure(figures::workspace(recording, calibration)),
                 Block::Figure(figures::vectors(calibration)),
+                Block::Figure(figures::arms_of(campaign, calibration)),
                 Block::Figure(figures::against(recording, calibration)),
             ],
         ),

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::calibration::{self, convergence, mode_residuals};
 use super::length::length;
+use super::method;
 use super::pictures::calibration::{
     MethodErrors, ModeComparison, ModeResiduals, PoseError, cumulative_errors, error_distribution,
     error_over_workspace, mode_comparison, residuals_by_group,
@@ -68,6 +69,7 @@ pub fn report(campaign: &Campaign, comparison: &Comparison) -> Report {
         warnings,
         sections: sections(campaign, comparison),
         cards: cards(campaign, comparison),
+        method: method::told(method::COMPARISON),
         ..Report::default()
     }
 }

@@ -12,6 +12,7 @@ pub use numbers::{number, rows};
 use nalgebra::Matrix3;
 use serde_json::{Value, json};
 
+use super::method;
 use super::pictures::{RodShape, ShapeCase, rod_shape};
 use super::rod_drawing::drawing;
 use super::sensitivities::{self, OnePercent};
@@ -81,6 +82,7 @@ pub fn report(study: &Study) -> Report {
         warnings: warnings(study),
         sections: sections(study),
         cards: cards(study),
+        method: method::told(method::COMPLIANCE),
         ..Report::default()
     }
 }

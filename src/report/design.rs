@@ -16,6 +16,7 @@ use self::cells::{
 pub use self::files::files;
 pub use self::for_robot::{for_robot_card, for_robot_headline, for_robot_json, for_robot_section};
 use super::chart::Figure as Picture;
+use super::method;
 use super::sensitivities::{self, OnePercent};
 use super::table::{Column, Table};
 use super::{Block, Report, Section, swing};
@@ -198,6 +199,7 @@ pub fn report(study: &Study) -> Report {
         title: format!("Rods for {}", study.space.file),
         headline: headline(study),
         cards: overview::cards(study),
+        method: method::told(method::ROD_DESIGN),
         warnings: overview::warnings(study),
         sections,
         ..Report::default()

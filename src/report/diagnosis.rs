@@ -22,12 +22,14 @@ use serde_json::Value;
 
 use self::subject::Subject;
 use super::Report;
+use super::method;
 
 fn report(mut subject: Subject) -> Report {
     Report {
         title: subject.title.clone(),
         headline: headline::headline(&subject),
         cards: cards::cards(&subject),
+        method: method::told(method::DIAGNOSIS),
         warnings: subject.all_warnings(),
         sections: sections::all(&mut subject),
         ..Report::default()

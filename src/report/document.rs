@@ -23,6 +23,8 @@ pub struct Report {
     pub warnings: Vec<String>,
     /// The body.
     pub sections: Vec<Section>,
+    /// How its numbers were found, a paragraph each.
+    pub method: Vec<String>,
     /// Where it all comes from: name and value, for example input files, options, version.
     pub provenance: Vec<(String, String)>,
     /// The file beside its page that has the result as JSON; empty where there is none.

@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::chart::{Axis, Bar, Chart, Colour, Dash, Direction, Figure, Mark, Range, Style};
+use super::method;
 use super::table::{Column, Table};
 use super::{Block, Card, Report, Section, proxy};
 use crate::calibration::Campaign;
@@ -301,6 +302,7 @@ pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> R
         warnings: Vec::new(),
         sections: vec![Section::new("What to expect", blocks)],
         cards: cards(rods),
+        method: method::told(method::FORECAST),
         ..Report::default()
     }
 }

@@ -47,6 +47,7 @@ pub fn page(report: &Report) -> String {
                     }
                     @if report.sections.len() > 1 { (contents(report)) }
                     @for section in sections { (section) }
+                    @if !report.method.is_empty() { (method(&report.method)) }
                     @if !report.provenance.is_empty() || !report.result_file.is_empty() { (provenance(report)) }
                 }
                 footer { p { "Written by rodcal " (env!("CARGO_PKG_VERSION")) "." } }
@@ -105,7 +106,8 @@ fn cards(cards: &[Card]) -> Markup {
             @for card in cards {
                 li class=(class(card.tone)) {
                     span.label { (card.label) }
-                    span.value { (unbroken(&card.value)) }
+                    // a card is narrow: its uncertainty may stand on a line of its own
+                    span.value { (unbroken(&card.value).replace("\u{a0}±", " ±")) }
                     @if !card.detail.is_empty() { span.detail { (unbroken(&card.detail)) } }
                 }
             }
@@ -162,16 +164,24 @@ fn contents(report: &Report) -> Markup {
     }
 }
 
+fn method(paragraphs: &[String]) -> Markup {
+    html! {
+        section.method {
+            h2 { "Method" }
+            @for paragraph in paragraphs { p { (with_code(paragraph)) } }
+        }
+    }
+}
+
 fn provenance(report: &Report) -> Markup {
     let list = html! {
         dl { @for (name, value) in &report.provenance { dt { (name) } dd { (value) } } }
     };
     html! {
         section.provenance {
-            h2 { "Where this comes from" }
             // a page beside others has the same as they
-            @if report.page.is_empty() { (list) } @else {
-                details { summary { "The command, and every input with its SHA-256" } div { (list) } }
+            @if report.page.is_empty() { h2 { "Where this comes from" } (list) } @else {
+                details { summary { "Where this comes from: the command, and every input with its SHA-256" } div { (list) } }
             }
             @if !report.result_file.is_empty() {
                 p.files { "All numbers: " a href=(report.result_file) { (report.result_file) } }

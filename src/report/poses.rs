@@ -4,6 +4,7 @@ mod figures;
 
 use serde_json::{Map, Value, json};
 
+use super::method;
 use super::table::{Column, Table};
 use super::{Block, Card, Report, Section, Tone, forecast};
 use crate::calibration::campaign::GroupName;
@@ -163,6 +164,7 @@ pub fn report(study: &PoseStudy) -> Report {
         title: format!("Poses for {}", study.campaign.file),
         headline: headline(study),
         cards: cards(study),
+        method: method::told(method::POSE_DESIGN),
         warnings: warnings(study),
         sections,
         ..Report::default()
@@ -308,7 +310,7 @@ fn worth(study: &PoseStudy) -> Vec<Block> {
     for known in known.into_iter().take(PARAMETERS) {
         let unit = known.parameter.unit();
         table.row([
-            known.parameter.to_string(),
+            known.parameter.words(),
             unit.symbol.to_owned(),
             significant(known.before / unit.si, 2),
             significant(known.after / unit.si, 2),

@@ -17,6 +17,7 @@ use serde_json::{Value, json};
 
 use super::chart::Figure;
 use super::length::length;
+use super::method;
 use super::pictures::calibration::{PoseError, uncertainty_over_workspace};
 use super::table::{Column, Table};
 use super::{Block, Card, Report, Section, Tone};
@@ -378,6 +379,7 @@ pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
         headline: format!("{}: {tips} predicted{known}.", robot.name),
         warnings: warnings(robot, prediction),
         cards: cards(robot, prediction, most),
+        method: method::told(method::PREDICTION),
         sections: vec![Section::new(
             "Predicted tips",
             picture(prediction).into_iter().map(Block::Figure).chain([Block::Table(table)]).collect(),

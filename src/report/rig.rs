@@ -5,6 +5,7 @@ mod figures;
 use serde_json::{Map, Value, json};
 
 use super::compliance::{matrices, rows};
+use super::method;
 use super::table::{Column, Table};
 use super::{Block, Card, Report, Section, Tone};
 use crate::compliance::paper_contact_force;
@@ -100,6 +101,7 @@ pub fn report(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Report {
         warnings: warnings(fit, readings, rod),
         sections: sections(fit, readings, rod),
         cards: cards(fit, rod),
+        method: method::told(method::RIG_FIT),
         ..Report::default()
     }
 }

@@ -5,6 +5,7 @@ use nalgebra::Matrix3;
 use serde_json::{Value, json};
 
 use super::diagnosis::load_plan;
+use super::method;
 use super::pictures::{RodShape, ShapeCase, Station, StationKind, rod_shape};
 use super::rod_drawing::drawing;
 use super::scale::superscript;
@@ -70,6 +71,7 @@ pub fn report(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Report {
         title: format!("Rig measurements for rod {}", rod.name),
         headline: headline(plan),
         cards: cards(plan),
+        method: method::told(method::RIG_DESIGN),
         warnings: not_distinguished(plan),
         sections,
         ..Report::default()

@@ -83,6 +83,11 @@ pub enum ParameterGroup {
 }
 
 impl Parameter {
+    /// For people: `base x`, `theta2`, `tool z`.
+    pub fn words(&self) -> String {
+        self.to_string().replace('_', " ")
+    }
+
     /// What it is a number of.
     ///
     /// ```

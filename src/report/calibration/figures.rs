@@ -1,7 +1,8 @@
 //! The pictures of a calibration's report, from results to plain numbers.
 
-use crate::calibration::campaign::{Recording, Row};
+use crate::calibration::campaign::{Campaign, Group, Recording, Row, Targets};
 use crate::calibration::{Calibration, CrossValidation, Summary};
+use crate::report::arms::{ArmPose, arms};
 use crate::report::chart::Figure;
 use crate::report::pictures::calibration::convergence as convergence_picture;
 use crate::report::pictures::calibration::{
@@ -33,6 +34,28 @@ pub(super) fn distribution(calibration: &Calibration, cross_validation: Option<&
     methods.extend(calibration.validation.as_ref().map(|after| method("validation", &after.errors)));
     methods.extend(cross_validation.map(|cv| method("held-out poses", &cv.errors)));
     error_distribution(&methods)
+}
+
+/// The arm in some of the poses, as it was calibrated.
+pub(super) fn arms_of(campaign: &Campaign, calibration: &Calibration) -> Figure {
+    let recording = &campaign.measurements;
+    let poses: Vec<ArmPose> = (recording.rows.iter().enumerate())
+        .map(|(row, own)| ArmPose {
+            place: own.group,
+            joints: recording.joints(row),
+            name: format!("pose {}", own.pose),
+        })
+        .collect();
+    let place = |group: &Group| {
+        let is_known = matches!(recording.targets, Targets::Points(_));
+        (group.name.to_string(), is_known.then_some(group.device.origin))
+    };
+    let is_tracked = recording.groups.iter().all(|group| group.name.is_tracked());
+    let places: Vec<_> = if is_tracked { Vec::new() } else { recording.groups.iter().map(place).collect() };
+    arms(&calibration.setup, campaign.rod.as_ref(), &poses, &places).captioned(
+        "The arm in some of the poses, as calibrated, as sticks from joint to joint with rod or tool, and the flange \
+         of the others.",
+    )
 }
 
 /// Residuals against reach, joint angles, order and, where they were recorded, time and
@@ -130,7 +153,7 @@ pub(super) fn corrections(calibration: &Calibration) -> Figure {
                 let correction = (estimate.value - estimate.nominal) / unit;
                 let half = estimate.std_error.map(|error| INTERVAL * error / unit);
                 ParameterCorrection {
-                    name: estimate.parameter.to_string(),
+                    name: estimate.parameter.words(),
                     correction,
                     interval: half.map(|half| [correction - half, correction + half]),
                     note: String::new(),

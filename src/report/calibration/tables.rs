@@ -9,8 +9,8 @@ use crate::robot::Parameter;
 use crate::units::{DEG, MM, UM, decimals_of, fixed, significant};
 
 pub(super) const PARAMETERS_NOTE: &str = "Names are those of the Hayati table: theta, d, a, alpha, \
-     beta of each link; c is a joint's compliance, base_* the position of {0} in {W}, base_r* the \
-     correction to the base rotation, about the world axes, tool_* the undeflected tip in {T}. \
+     beta of each link; c is a joint's compliance, base x, y, z the position of {0} in {W}, base rx, ry, rz \
+     the correction to the base rotation, about the world axes, tool x, y, z the undeflected tip in {T}. \
      Standard errors follow from the scatter of the residuals, unless the campaign states the noise. \
      \"Not supported\": the correction is smaller than its standard error, so that these poses do not \
      show that the number differs from its nominal value.";
@@ -101,7 +101,7 @@ pub(super) fn parameters(calibration: &Calibration) -> Table {
         let decimals = error.and_then(decimals_of).unwrap_or(DECIMALS);
         let show = |value: f64| fixed(value / unit.si, decimals);
         table.row([
-            estimate.parameter.to_string(),
+            estimate.parameter.words(),
             unit.symbol.to_owned(),
             show(estimate.nominal),
             show(estimate.value),
@@ -183,7 +183,7 @@ pub(super) fn correlations(calibration: &Calibration, limit: f64) -> Block {
         vec![Column::text("parameter"), Column::text("with"), Column::number("correlation", "")],
     );
     for (a, b, value) in pairs.iter().take(MOST) {
-        table.row([a.to_string(), b.to_string(), format!("{value:.3}")]);
+        table.row([a.words(), b.words(), format!("{value:.3}")]);
     }
     if pairs.len() > MOST {
         table.notes.push(format!("and {} more", pairs.len() - MOST));

@@ -273,6 +273,9 @@ pub fn evidence(subject: &Subject) -> Section {
     Section::new("What else it might be", blocks)
 }
 
+/// Bars beyond what was found, and what may be it instead.
+const MOST_BARS: usize = 14;
+
 /// How likely each effect is by itself.
 fn candidates(ranked: &[Ranked]) -> Figure {
     let candidate = |ranked: &Ranked| Candidate {
@@ -284,11 +287,22 @@ fn candidates(ranked: &[Ranked]) -> Figure {
             Rank::Rejected => Class::Rejected,
         },
     };
-    let candidates: Vec<Candidate> = ranked.iter().map(candidate).collect();
-    bars(&candidates, NAMED).captioned(
+    let is_rejected = |ranked: &&Ranked| ranked.rank == Rank::Rejected;
+    let mut room = MOST_BARS.saturating_sub(ranked.iter().filter(|one| !is_rejected(one)).count());
+    let drawn = ranked.iter().filter(|one| {
+        let is_drawn = !is_rejected(one) || room > 0;
+        room -= usize::from(is_rejected(one) && is_drawn);
+        is_drawn
+    });
+    let candidates: Vec<Candidate> = drawn.map(candidate).collect();
+    let rest = match ranked.len() - candidates.len() {
+        0 => String::new(),
+        more => format!(" The table has {more} less likely ones too."),
+    };
+    bars(&candidates, NAMED).captioned(format!(
         "How likely each effect is by itself, at its best place, against noise alone. An effect with large odds is rejected \
-         where an adopted one explains the same data better.",
-    )
+         where an adopted one explains the same data better.{rest}"
+    ))
 }
 
 /// How well each session is predicted from the others.

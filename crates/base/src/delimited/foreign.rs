@@ -79,6 +79,10 @@ fn translated<'k>(column: &str, known: &[&'k str]) -> Option<(&'k str, Option<St
         ("load_kg", Some("n")) => find("load_n"),
         _ => Some(name),
     };
+    // `x_m` is no other language: another unit
+    if axis == Some(word) && column.contains('_') {
+        return None;
+    }
     let mut meant = WORDS.iter().filter(|(words, _)| words.split(' ').any(|known| known == word));
     let name = meant.find_map(|(_, pattern)| find(pattern)).and_then(by_unit)?;
     Some((name, unit.cloned()))

@@ -283,7 +283,7 @@ fn every_bad_column_or_cell_is_named_with_its_place() {
         (
             "x_mm,y_mm,z_mm",
             "x,y,z",
-            "measurements.csv:1: there are no columns x_mm, y_mm, z_mm, expected the ball's position in the device frame of the clamp, in mm -> is the column x meant to be x_mm?",
+            "measurements.csv:1: there are no columns x_mm, y_mm, z_mm, expected the ball's position in the device frame of the clamp, in mm -> rename \"x\" to x_mm, \"y\" to y_mm, \"z\" to z_mm",
         ),
         (
             "time_s",

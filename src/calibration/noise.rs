@@ -13,6 +13,10 @@ const UNEQUAL: f64 = 0.01;
 const LEAST: f64 = 1e-8;
 /// Fewest degrees of freedom for a noise of its own.
 const FEWEST: f64 = 10.0;
+/// So many times fewer rows of a group may be far out without being its noise.
+const FEW: usize = 5;
+/// The median of χ with three degrees of freedom.
+const MEDIAN: f64 = 1.538_172_254_5;
 
 /// What an outlier counts. The distance of a pose from the model is judged, not single coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -69,9 +73,10 @@ impl Noise {
 
     /// From the deviations of a fit of `rank` parameters.
     ///
-    /// Every group has the share of the degrees of freedom that it has of the rows. Robust weights
-    /// are judged by the median length of the deviations in each group: the length of a normal
-    /// vector in space has the median 1.538 σ.
+    /// Every group has the share of the degrees of freedom that it has of the rows. A row that is far
+    /// out of its group is no noise of the group, and is not counted where groups are compared.
+    /// Robust weights are judged by the median length of the deviations in each group: the length
+    /// of a normal vector in space has the median 1.538 σ.
     ///
     /// # Errors
     /// As [`chi_squared_quantile`]; none in practice.
@@ -97,13 +102,16 @@ impl Noise {
                 }
                 _ => {
                     let lengths: Vec<f64> = rows.iter().map(|&row| deviations[row].norm()).collect();
-                    // the median of χ with three degrees of freedom
-                    const MEDIAN: f64 = 1.538_172_254_5;
                     (median(&lengths).unwrap_or(0.0) / MEDIAN).powi(2) / share
                 }
             }
         };
         let pooled = variance(&all);
+        if robust == Robust::None {
+            for rows in &mut rows_by_group {
+                without_far(rows, deviations)?;
+            }
+        }
         let of_group: Vec<f64> =
             rows_by_group.iter().map(|rows| if rows.is_empty() { pooled } else { variance(rows) }).collect();
         let worth = if robust == Robust::None { 1.0 } else { MEDIAN_EFFICIENCY };
@@ -145,9 +153,9 @@ impl Noise {
     /// # Errors
     /// As [`chi_squared_quantile`]; none in practice.
     pub fn outliers(&self, recording: &Recording, deviations: &[Vector3<f64>]) -> Result<Vec<usize>> {
-        let limit = chi_squared_quantile(1.0 - 0.01 / recording.len().max(1) as f64, 3.0)?.sqrt();
-        let far = |&row: &usize| deviations[row].norm() > limit * self.of_group[recording.rows[row].group];
-        Ok((0..recording.len()).filter(far).collect())
+        let limit = far(recording.len())?;
+        let is_far = |&row: &usize| deviations[row].norm() > limit * self.of_group[recording.rows[row].group];
+        Ok((0..recording.len()).filter(is_far).collect())
     }
 }
 
@@ -168,6 +176,24 @@ impl Robust {
             Robust::Tukey => 0.0,
         }
     }
+}
+
+/// Takes from the rows of a group those that are far out by its median, where they are few: one
+/// misread pose would have all others of its clamp count less.
+fn without_far(rows: &mut Vec<usize>, deviations: &[Vector3<f64>]) -> Result<()> {
+    let lengths: Vec<f64> = rows.iter().map(|&row| deviations[row].norm()).collect();
+    let limit = far(rows.len())? * median(&lengths).unwrap_or(0.0) / MEDIAN;
+    let near: Vec<usize> = rows.iter().copied().filter(|&row| deviations[row].norm() <= limit).collect();
+    if FEW * (rows.len() - near.len()) <= rows.len() {
+        *rows = near;
+    }
+    Ok(())
+}
+
+/// The length, in standard deviations, that the longest of so many normal vectors has in one
+/// recording of a hundred.
+fn far(count: usize) -> Result<f64> {
+    Ok(chi_squared_quantile(1.0 - 0.01 / count.max(1) as f64, 3.0)?.sqrt())
 }
 
 /// Bartlett's test over the groups that have enough rows; `None` for fewer than two.

@@ -80,7 +80,9 @@ pub fn diagnose_calibrated<'c>(
         let about = calibrated_beside(&prepared, &hypothesis, &left)?;
         let noise = unequal(&prepared, &hypothesis, &left)?;
         let is_equal = noise.is_none() == look.scatter.is_none();
-        let tails = if look.weights.is_none() { tails::weights(&prepared, &hypothesis, &left) } else { None };
+        // groups of unequal scatter look like heavy tails as long as they count alike
+        let is_asked = look.weights.is_none() && is_equal;
+        let tails = if is_asked { tails::weights(&prepared, &hypothesis, &left) } else { None };
         let moved_after = moved_after(&prepared, &hypothesis);
         let is_in_place = moved_after.iter().all(|row| look.moved_after.contains(row));
         // clamps get a second look: what is left says how well displacements are known

@@ -134,7 +134,7 @@ pub fn unequal(prepared: &Prepared, hypothesis: &Hypothesis, left: &DVector<f64>
     let left = prepared.model.by_row(left);
     let known = Noise { is_stated: false, ..prepared.model.calibration.noise.clone() };
     let rank = prepared.model.calibration.fit.covariance.rank + hypothesis.determined.round() as usize;
-    let noise = known.estimate(recording, &left, rank.min(3 * recording.len() - 1), Robust::Huber)?;
+    let noise = known.estimate(recording, &left, rank.min(3 * recording.len() - 1), Robust::None)?;
     let first = noise.of_group.first().copied().unwrap_or_default();
     Ok(noise.of_group.iter().any(|sd| *sd != first).then_some(noise))
 }

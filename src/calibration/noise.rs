@@ -73,8 +73,8 @@ impl Noise {
 
     /// From the deviations of a fit of `rank` parameters.
     ///
-    /// Every group has the share of the degrees of freedom that it has of the rows. A row that is far
-    /// out of its group is no noise of the group, and is not counted where groups are compared.
+    /// Every group has the share of the degrees of freedom that it has of the rows. A row that is
+    /// far out of its group is no noise of the group, and is not counted where groups are compared.
     /// Robust weights are judged by the median length of the deviations in each group: the length
     /// of a normal vector in space has the median 1.538 σ.
     ///

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Looks at report pages in Chromium: at 360, 820 and 1440 px, light and dark, and printed.
+"""Looks at report pages in Chromium: at 360, 820 and 1440 px, light and dark, at 1920 px, and printed.
 
     .ci/pages.py PAGE.html ...
 
@@ -18,8 +18,9 @@ import subprocess
 import sys
 import tempfile
 
-# the widths of a telephone, a tablet and a desk; of A4 within its margins
-VIEWS = [(width, scheme) for width in (360, 820, 1440) for scheme in ("light", "dark")] + [(672, "print")]
+# the widths of a telephone, a tablet and a desk; of a wide desk; of A4 within its margins
+VIEWS = [(width, scheme) for width in (360, 820, 1440) for scheme in ("light", "dark")]
+VIEWS += [(1920, "light"), (672, "print")]
 
 # Returns a list of complaints.
 CHECK = r"""

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use rodcal::delimited::visible;
 use rodcal::parallel::in_parallel;
+use rodcal::report::text::text_within;
 use rodcal::{Error, Result, files};
 use rodcal_trial::answers::{self, Answer};
 use rodcal_trial::archive::{self, Manifest, Plan};
@@ -18,11 +19,13 @@ use rodcal_trial::{Seed, Suite};
 use serde_json::json;
 
 use self::case::CaseFiles;
-use super::output::Outcome;
+use super::output::{Outcome, width};
 use super::progress::Progress;
 
 /// Cases that are answered between two writes.
 const BLOCK: usize = 8;
+/// Columns that a score as plain lines takes.
+const WIDE: usize = 100;
 
 #[derive(Debug, Subcommand)]
 pub enum Trial {
@@ -239,7 +242,12 @@ impl ScoreAnswers {
         inputs.retain(|(file, _)| !std::env::args().any(|argument| argument == *file));
         let mut report = report::report(&score);
         report.provenance.extend(sealed.seed().map(|seed| ("seed of the cases".into(), seed.to_string())));
-        Ok(Outcome { text: Some(score.text()), inputs, ..Outcome::new(score.json()?, report) })
+        // on a narrow terminal tables that fit it
+        let text = match width() < WIDE {
+            true => text_within(&report, width()),
+            false => score.text(),
+        };
+        Ok(Outcome { text: Some(text), inputs, ..Outcome::new(score.json()?, report) })
     }
 
     /// Makes the measurement that an answer proposes and diagnoses the recording with it.

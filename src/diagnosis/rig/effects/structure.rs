@@ -53,8 +53,11 @@ pub static STIFFNESS_SCALE: RigEffect = RigEffect {
         vec![entry(&STIFFNESS_SCALE, Location::Part(Part::Rod), factor, Action::Stiffness)]
     },
     missing: |_| NOT_YIELDING,
-    observed: |finding, _| {
-        format!("All tubes of the rod are {} than in the model", softer(number(finding, "factor")))
+    observed: |finding, model| {
+        // the rod as a whole is so by less, where a part of it bends in its joints
+        let is_jointed = model.rod.as_ref().is_some_and(|rod| !rod.joints.is_empty());
+        let joints = if is_jointed { ", its joints as stated" } else { "" };
+        format!("All tubes of the rod are {} than in the model{joints}", softer(number(finding, "factor")))
     },
     write: |term, _, rod| {
         *rod = with_moduli(rod, term.values[0], term.values[0]);

@@ -1,7 +1,7 @@
 //! How much single measurements scatter, and what they count: groups of unequal noise, outliers.
 
 use crate::error::Result;
-use crate::statistics::{chi_squared_quantile, median};
+use crate::statistics::{chi_squared_quantile, f_survival, median};
 
 use super::campaign::Recording;
 use nalgebra::Vector3;
@@ -109,7 +109,7 @@ impl Noise {
         let pooled = variance(&all);
         if robust == Robust::None {
             for rows in &mut rows_by_group {
-                without_far(rows, deviations)?;
+                without_far(rows, deviations, recording.len())?;
             }
         }
         let of_group: Vec<f64> =
@@ -178,13 +178,28 @@ impl Robust {
     }
 }
 
-/// Takes from the rows of a group those that are far out by its median, where they are few: one
-/// misread pose would have all others of its clamp count less.
-fn without_far(rows: &mut Vec<usize>, deviations: &[Vector3<f64>]) -> Result<()> {
+/// Takes from the `rows` of a group those that are far out, where they are few: one misread pose
+/// would have all others of its clamp count less. Its median says which they may be; beside the
+/// others' scatter s² each must be farther out than one row in a hundred recordings of so many is,
+/// so that groups of normal noise stay as they are:
+///
+/// ```text
+/// F = (|d|²/3)/s²,  s² = Σ |d|²/3n over the n others;    P(F₃,₃ₙ > F) < 0.01/rows
+/// ```
+fn without_far(rows: &mut Vec<usize>, deviations: &[Vector3<f64>], all: usize) -> Result<()> {
     let lengths: Vec<f64> = rows.iter().map(|&row| deviations[row].norm()).collect();
     let limit = far(rows.len())? * median(&lengths).unwrap_or(0.0) / MEDIAN;
-    let near: Vec<usize> = rows.iter().copied().filter(|&row| deviations[row].norm() <= limit).collect();
-    if FEW * (rows.len() - near.len()) <= rows.len() {
+    let (near, out): (Vec<usize>, Vec<usize>) =
+        rows.iter().partition(|&&row| deviations[row].norm() <= limit);
+    let Some(least) = out.iter().map(|&row| deviations[row].norm_squared()).reduce(f64::min) else {
+        return Ok(());
+    };
+    let square: f64 = near.iter().map(|&row| deviations[row].norm_squared()).sum();
+    if FEW * out.len() > rows.len() || square == 0.0 {
+        return Ok(());
+    }
+    let count = near.len() as f64;
+    if f_survival(least / (square / count), 3.0, 3.0 * count)? < 0.01 / all as f64 {
         *rows = near;
     }
     Ok(())
@@ -204,4 +219,49 @@ fn bartlett(variances: &[f64], dof: &[f64]) -> Result<Option<f64>> {
         return Ok(None);
     }
     crate::statistics::bartlett(&groups).map(Some)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::Random;
+
+    fn normal(count: usize, random: &mut Random) -> Vec<Vector3<f64>> {
+        (0..count).map(|_| Vector3::from_fn(|_, _| random.normal())).collect()
+    }
+
+    fn left(deviations: &[Vector3<f64>], all: usize) -> Vec<usize> {
+        let mut rows = (0..deviations.len()).collect();
+        without_far(&mut rows, deviations, all).unwrap();
+        rows
+    }
+
+    #[test]
+    fn one_far_row_is_no_noise_of_its_group_and_several_are() {
+        let mut deviations = normal(8, &mut Random::seeded(1, 1));
+        deviations[2] = Vector3::new(8.0, -6.0, 0.0);
+        assert_eq!(left(&deviations, 40), [0, 1, 3, 4, 5, 6, 7]);
+        deviations[5] = Vector3::new(0.0, 9.0, 5.0);
+        assert_eq!(left(&deviations, 40).len(), 8);
+        // as many as a fifth
+        deviations.extend(normal(8, &mut Random::seeded(1, 2)));
+        assert_eq!(left(&deviations, 40).len(), 14);
+        // nothing is known of others that do not scatter
+        let mut still = vec![Vector3::zeros(); 8];
+        still[0] = Vector3::x();
+        assert_eq!(left(&still, 40).len(), 8);
+    }
+
+    /// One recording in a hundred of normal noise loses a row, whatever the groups' size.
+    #[test]
+    fn groups_of_normal_noise_stay_as_they_are() {
+        for (size, groups) in [(5, 10), (8, 12), (12, 5), (30, 5)] {
+            let mut random = Random::seeded(2, size as u64);
+            let recordings = 500;
+            let lost = (0..recordings * groups)
+                .filter(|_| left(&normal(size, &mut random), size * groups).len() < size);
+            let lost = lost.count();
+            assert!(lost <= 14, "{lost} of {recordings} with groups of {size}");
+        }
+    }
 }

@@ -212,7 +212,7 @@ pub fn report(
         warnings: warnings(campaign, calibration),
         sections: sections(campaign, calibration, cross_validation),
         cards: cards::cards(campaign, calibration, cross_validation),
-        method: method::told(method::CALIBRATION),
+        method: method::paragraphs(method::CALIBRATION),
         ..Report::default()
     }
 }

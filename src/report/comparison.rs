@@ -69,7 +69,7 @@ pub fn report(campaign: &Campaign, comparison: &Comparison) -> Report {
         warnings,
         sections: sections(campaign, comparison),
         cards: cards(campaign, comparison),
-        method: method::told(method::COMPARISON),
+        method: method::paragraphs(method::COMPARISON),
         ..Report::default()
     }
 }

@@ -82,7 +82,7 @@ pub fn report(study: &Study) -> Report {
         warnings: warnings(study),
         sections: sections(study),
         cards: cards(study),
-        method: method::told(method::COMPLIANCE),
+        method: method::paragraphs(method::COMPLIANCE),
         ..Report::default()
     }
 }

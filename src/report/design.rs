@@ -199,7 +199,7 @@ pub fn report(study: &Study) -> Report {
         title: format!("Rods for {}", study.space.file),
         headline: headline(study),
         cards: overview::cards(study),
-        method: method::told(method::ROD_DESIGN),
+        method: method::paragraphs(method::ROD_DESIGN),
         warnings: overview::warnings(study),
         sections,
         ..Report::default()

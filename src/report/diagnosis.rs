@@ -29,7 +29,7 @@ fn report(mut subject: Subject) -> Report {
         title: subject.title.clone(),
         headline: headline::headline(&subject),
         cards: cards::cards(&subject),
-        method: method::told(method::DIAGNOSIS),
+        method: method::paragraphs(method::DIAGNOSIS),
         warnings: subject.all_warnings(),
         sections: sections::all(&mut subject),
         ..Report::default()

@@ -302,7 +302,7 @@ pub fn comparison(campaign: &Campaign, rods: &[RodForecast], basis: &Basis) -> R
         warnings: Vec::new(),
         sections: vec![Section::new("What to expect", blocks)],
         cards: cards(rods),
-        method: method::told(method::FORECAST),
+        method: method::paragraphs(method::FORECAST),
         ..Report::default()
     }
 }

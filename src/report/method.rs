@@ -5,7 +5,7 @@
 type Method = &'static [&'static str];
 
 /// For a report.
-pub(super) fn told(method: Method) -> Vec<String> {
+pub(super) fn paragraphs(method: Method) -> Vec<String> {
     method.iter().map(|paragraph| (*paragraph).to_owned()).collect()
 }
 

@@ -164,7 +164,7 @@ pub fn report(study: &PoseStudy) -> Report {
         title: format!("Poses for {}", study.campaign.file),
         headline: headline(study),
         cards: cards(study),
-        method: method::told(method::POSE_DESIGN),
+        method: method::paragraphs(method::POSE_DESIGN),
         warnings: warnings(study),
         sections,
         ..Report::default()

@@ -379,7 +379,7 @@ pub fn report(robot: &Robot, prediction: &Prediction) -> Report {
         headline: format!("{}: {tips} predicted{known}.", robot.name),
         warnings: warnings(robot, prediction),
         cards: cards(robot, prediction, most),
-        method: method::told(method::PREDICTION),
+        method: method::paragraphs(method::PREDICTION),
         sections: vec![Section::new(
             "Predicted tips",
             picture(prediction).into_iter().map(Block::Figure).chain([Block::Table(table)]).collect(),

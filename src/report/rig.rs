@@ -101,7 +101,7 @@ pub fn report(fit: &Fit, readings: &Readings, rod: Option<&Rod>) -> Report {
         warnings: warnings(fit, readings, rod),
         sections: sections(fit, readings, rod),
         cards: cards(fit, rod),
-        method: method::told(method::RIG_FIT),
+        method: method::paragraphs(method::RIG_FIT),
         ..Report::default()
     }
 }

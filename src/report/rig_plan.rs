@@ -71,7 +71,7 @@ pub fn report(plan: &RigPlan, rod: &Rod, bench: &Bench) -> Report {
         title: format!("Rig measurements for rod {}", rod.name),
         headline: headline(plan),
         cards: cards(plan),
-        method: method::told(method::RIG_DESIGN),
+        method: method::paragraphs(method::RIG_DESIGN),
         warnings: not_distinguished(plan),
         sections,
         ..Report::default()

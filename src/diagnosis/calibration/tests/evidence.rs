@@ -13,7 +13,7 @@ use nalgebra::DMatrix;
 const RIGHT_ANGLE: f64 = 1e-3;
 
 /// Noise of a coordinate of every row, m, in 1 … 5 by its group.
-fn noisy(campaign: &Campaign, of_group: impl Fn(usize) -> f64, seed: u64) -> Campaign {
+pub(super) fn noisy(campaign: &Campaign, of_group: impl Fn(usize) -> f64, seed: u64) -> Campaign {
     let mut random = Random::seeded(seed, 0);
     let rows = &campaign.measurements.rows;
     let off: Vec<Vector3<f64>> =

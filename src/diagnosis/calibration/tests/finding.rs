@@ -1,6 +1,7 @@
 //! What the engine finds in campaigns into which something was put, and in those into which nothing
 //! was.
 
+use super::evidence::noisy;
 use super::*;
 use crate::inference::{DiscrepancyModel, Effect, Finding, Linearised, infer};
 use crate::robot::{Kinematics, Setup};
@@ -168,6 +169,24 @@ fn the_way_to_the_first_pose_is_unknown() {
     assert_eq!(named_with(Vector3::new(120e-6, -110e-6, 90e-6)), ["readback_lag: all joints"]);
     let far = named_with(Vector3::new(6e-3, 0.0, 0.0));
     assert!(far.contains(&"outlier: pose 1".to_owned()) && far.len() == 2, "{far:?}");
+}
+
+/// One pose of a quiet clamp is no noise of that clamp, and beside a noisy one no heavy tail of all.
+#[test]
+fn a_misread_pose_beside_a_noisy_clamp_is_found() {
+    let quiet = clamps(10);
+    let rows = &quiet.measurements.rows;
+    let misread = (0..rows.len()).find(|&row| rows[row].group == 3).unwrap();
+    for seed in 1..=3 {
+        let mut campaign = noisy(&quiet, |group| if group == 1 { 66.0 * UM } else { 16.0 * UM }, seed);
+        let Targets::Points(points) = &mut campaign.measurements.targets else { panic!("points") };
+        points[misread] += Vector3::new(350.0, -400.0, 250.0) * UM;
+        let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+        let of_group = &calibration.noise.of_group;
+        assert!(of_group[3] < 0.7 * of_group[1] && calibration.outliers.contains(&misread), "{of_group:?}");
+        let expected = format!("outlier: pose {}", campaign.measurements.rows[misread].pose);
+        assert_eq!(named(&campaign), [expected], "seed {seed}");
+    }
 }
 
 /// A campaign that was recorded with the rod `actual` and has the file of [`ROD`].

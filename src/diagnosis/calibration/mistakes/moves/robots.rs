@@ -1,5 +1,7 @@
 //! Robots that the robot file means where numbers of it are in another unit.
 
+use std::collections::BTreeSet;
+
 use nalgebra::Vector3;
 
 use super::super::super::effects::mistakes::{FRAME_MISTAKE, SIGN_MISTAKE, TYPING_MISTAKE, UNIT_MISTAKE};
@@ -92,7 +94,8 @@ fn gravity(campaign: &Campaign) -> Vec<Reading> {
         })
     };
     let mut all: Vec<Reading> = units.into_iter().filter_map(meant).collect();
-    if given != Vector3::zeros() {
+    let is_turned = given != Vector3::zeros() && shows_its_direction(campaign);
+    if is_turned {
         all.push(Reading {
             robot: with(-given),
             effect: &SIGN_MISTAKE,
@@ -104,7 +107,7 @@ fn gravity(campaign: &Campaign) -> Vec<Reading> {
         });
     }
     let axis = given.iamax();
-    let is_along_axis = given.norm() > 0.0 && given[axis].abs() == given.norm();
+    let is_along_axis = is_turned && given[axis].abs() == given.norm();
     let aside = (0..3).filter(|&other| is_along_axis && other != axis);
     for (other, sign) in aside.flat_map(|other| [(other, -1.0), (other, 1.0)]) {
         let mut gravity = Vector3::zeros();
@@ -131,6 +134,14 @@ fn gravity(campaign: &Campaign) -> Vec<Reading> {
         });
     }
     all
+}
+
+/// Whether poses tell gravity that is turned from a clamp that stands aside: between two clamps one
+/// three millimetres aside was taken for it, between three none was.
+fn shows_its_direction(campaign: &Campaign) -> bool {
+    let recording = &campaign.measurements;
+    let groups: BTreeSet<usize> = recording.rows.iter().map(|row| row.group).collect();
+    groups.len() >= 3 || groups.iter().all(|&group| recording.groups[group].name.is_tracked())
 }
 
 impl List<'_> {

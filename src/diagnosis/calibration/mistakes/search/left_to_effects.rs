@@ -51,7 +51,6 @@ impl MistakeSearch<'_> {
                     .collect(),
             ),
             Some(DraftChange::Moved(_) | DraftChange::Seen(_)) => {}
-            Some(DraftChange::Body(body, _)) if self.turns_gravity(*body) => {}
             _ => return Vec::new(),
         }
         let displaced = turned.into_iter().filter(|turned| !turned.is_empty()).filter_map(|turned| {
@@ -61,11 +60,6 @@ impl MistakeSearch<'_> {
             self.with_loose(thin, price, changed, from)
         });
         displaced.collect()
-    }
-
-    fn turns_gravity(&self, body: usize) -> bool {
-        let gravity = |body: usize| self.bodies[body].robot.gravity;
-        gravity(body).dot(&gravity(0)) < 0.5 * gravity(body).norm() * gravity(0).norm()
     }
 
     /// A tip that is elsewhere in {T} in the rows whose positions are changed.

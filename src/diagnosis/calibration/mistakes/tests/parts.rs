@@ -222,6 +222,23 @@ fn a_disturbed_row_in_a_clamp_is_no_other_unit_and_no_other_row() {
     assert!(found(&wrong).iter().all(|(effect, _)| effect == "outlier"), "{:?}", found(&wrong));
 }
 
+/// Of two clamps one that stands beside its place looks like gravity along another axis.
+#[test]
+fn one_of_two_clamps_beside_its_place_is_no_other_gravity() {
+    let right = tx90();
+    let clamp_of = |campaign: &Campaign, row: usize| campaign.measurements.rows[row].group;
+    let rows: Vec<usize> = (0..right.measurements.len()).filter(|&row| clamp_of(&right, row) < 2).collect();
+    let robot_file = "tx90.toml".to_owned();
+    let mut wrong = Campaign { measurements: right.measurements.subset(&rows), robot_file, ..right };
+    for row in 0..wrong.measurements.len() {
+        if clamp_of(&wrong, row) == 1 {
+            let aside = wrong.measurements.device(row).rotation * Vector3::new(0.0, 0.0, -3.0) * MM;
+            points(&mut wrong)[row] += aside;
+        }
+    }
+    assert!(found(&wrong).iter().all(|(_, place)| place != "gravity_m_s2"), "{:?}", found(&wrong));
+}
+
 /// Of three clamps one that stands beside its place makes a part of the rows, or all that the
 /// devices show, look wrong: that is left to the effects.
 #[test]

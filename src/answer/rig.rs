@@ -16,9 +16,30 @@ pub fn rig_fit(readings: &Readings, rod: Option<&Rod>, options: &Options) -> Res
     let mut report = report::rig::report(&fit, readings, rod);
     let suspicions = suspected(readings, rod)?;
     // nothing that follows is worth more than what it is made of
-    if let Some(worst) = suspicions.first() {
+    if let Some(worst) = suspicions.first().and_then(|worst| worst.split("; ").next()) {
         report.headline = format!("Most likely a mistake: {worst}. {}", report.headline);
     }
     report.warnings.extend(suspicions);
     Ok(Answer::new(report::rig::json(&fit, readings, rod), report))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is made of kilograms is not said before the kilograms are.
+    #[test]
+    fn a_likely_mistake_stands_before_the_numbers() {
+        let file = |name: &str| std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+        let rod = Rod::read(&file("rods/5.toml")).unwrap();
+        let text = std::fs::read_to_string(file("stiffness_data/5.csv")).unwrap();
+        let headline = |text: &str| {
+            let readings = Readings::from_text("5.csv", text).unwrap();
+            rig_fit(&readings, Some(&rod), &Options::default()).unwrap().report.headline
+        };
+        assert!(headline(&text).starts_with("Rod 5# is 1.5 % softer"), "{}", headline(&text));
+        let wrong = headline(&text.replace("load_kg", "load_n"));
+        assert!(wrong.starts_with("Most likely a mistake: load_n looks like kilograms"), "{wrong}");
+        assert!(!wrong.contains('`') && !wrong.contains(".."), "{wrong}");
+    }
 }

@@ -171,7 +171,7 @@ fn the_way_to_the_first_pose_is_unknown() {
     assert!(far.contains(&"outlier: pose 1".to_owned()) && far.len() == 2, "{far:?}");
 }
 
-/// One pose of a quiet clamp is no noise of that clamp, and beside a noisy one no heavy tail of all.
+/// One pose of a quiet clamp is no noise of that clamp, and beside a noisy one no heavy tail.
 #[test]
 fn a_misread_pose_beside_a_noisy_clamp_is_found() {
     let quiet = clamps(10);

@@ -36,6 +36,8 @@ mod scan;
 mod site;
 
 #[cfg(test)]
+pub mod points;
+#[cfg(test)]
 mod tests;
 
 pub use bouc_wen::LoopShape;

@@ -104,8 +104,8 @@ fn a_fault_leaves_the_old_files_or_the_new_ones() {
 /// fail without a word.
 const BEHIND: usize = 4;
 
-/// A command whose disk fails, or that is killed, at each of these operations; with
-/// `RODCAL_FAULTS=1` at each that it has, with 3 at every third.
+/// A command whose disk fails, or that is killed, at these operations in turn; with
+/// `RODCAL_FAULTS=1` both at each that it has, with 3 at every third.
 fn struck(line: &str, counts: &[usize]) {
     let step = std::env::var("RODCAL_FAULTS").ok().and_then(|step| step.parse::<usize>().ok());
     let all: Vec<usize> = step.map_or_else(Vec::new, |step| (1..200).step_by(step.max(1)).collect());
@@ -116,7 +116,12 @@ fn struck(line: &str, counts: &[usize]) {
     whole.run(line).succeeded();
     let new = whole.listing();
     let mut unstruck = 0;
-    for (kind, count) in ["fail", "kill"].into_iter().flat_map(|kind| counts.iter().map(move |n| (kind, n))) {
+    let every_other = |kind: &str, k: usize| step.is_some() || (k % 2 == 0) == (kind == "fail");
+    let strikes = ["fail", "kill"].into_iter().flat_map(|kind| {
+        let own = counts.iter().enumerate().filter(move |(k, _)| every_other(kind, *k));
+        own.map(move |(_, count)| (kind, count))
+    });
+    for (kind, count) in strikes {
         // from the first operation on for either kind
         unstruck = if *count == 1 { 0 } else { unstruck };
         if step.is_some() && unstruck >= BEHIND {

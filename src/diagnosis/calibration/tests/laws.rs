@@ -1,7 +1,14 @@
 //! Laws that no library has, concealed in campaigns.
 
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
+
+use nalgebra::DMatrix;
+
 use super::super::model::Configuration;
 use super::*;
+use crate::diagnosis::calibration::laws::sites::sites;
+use crate::inference::law::points::{GrammarPoint, likeness};
 use crate::inference::law::{Constant, Form, Law};
 use crate::units::DEG;
 
@@ -84,4 +91,85 @@ fn where_nothing_is_left_there_is_no_law() {
         let found = diagnose_as_recorded(&campaign, Mode::Fea, &Options::default()).unwrap();
         assert!(found.law.is_none() && found.diagnosis.discrepancy.is_none());
     }
+}
+
+/// What effects of the library are in the grammar: for each the beginning of a candidate's place,
+/// and the law's place, variable and form.
+const POINTS: [(&str, &str, (&str, &str), Form); 11] = [
+    ("joint_compliance", "joint 2", ("joint 2", "torque of joint 2"), Form::Polynomial(1)),
+    ("joint_nonlinear_stiffness", "joint 2", ("joint 2", "torque of joint 2"), Form::Polynomial(3)),
+    ("backlash", "joint 2", ("joint 2", "torque of joint 2"), Form::Step),
+    ("encoder_scale", "joint 3", ("joint 3", "angle of joint 3"), Form::Polynomial(1)),
+    ("wrist_coupling", "joint 5 to 6", ("joint 6", "angle of joint 5"), Form::Polynomial(1)),
+    ("transmission_error", "joint 3", ("joint 3", "angle of joint 3"), Form::Harmonic),
+    ("joint_shift", "joint 3", ("joint 3", "number of poses before"), Form::Step),
+    ("tool_shift", "tool", ("tool", "number of poses before"), Form::Step),
+    ("thermal_drift", "joint 3, zero", ("joint 3", "number of poses before"), Form::Polynomial(1)),
+    ("thermal_drift", "tool", ("tool", "number of poses before"), Form::Polynomial(1)),
+    ("base_shift", "after pose", ("base", "number of poses before"), Form::Step),
+];
+
+/// What is no function of one variable at one place of the grammar: loads that bend the rod (each
+/// of three weights along three axes), what happens at one clamp or pose, what acts along the axes
+/// of a device, what turns a link or the base under a moment, a wait that depends on the move, and
+/// friction as large as the torque whatever its sign.
+const NO_POINTS: [&str; 16] = [
+    "rod_stiffness",
+    "rod_mass",
+    "tip_mass",
+    "payload_mass",
+    "gravity_direction",
+    "clamp_pose",
+    "clamp_shift",
+    "socket_shift",
+    "outlier",
+    "contact_force_variation",
+    "contact_spring",
+    "sensor_scale",
+    "link_flexibility",
+    "gravity_tilt",
+    "readback_lag",
+    "joint_friction",
+];
+
+/// Existing effects are points of the grammar: what they do to the poses is what a law does.
+#[test]
+fn the_library_is_a_part_of_the_grammar() {
+    let campaign = clamps(12);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let poses = campaign.measurements.len();
+    let all = sites(&context, 3 * poses);
+    let own = registry::candidates(&context).0;
+    let columns = |entry: &Entry| {
+        let mut matrix = DMatrix::zeros(3 * poses, entry.columns.len());
+        for (k, column) in entry.columns.iter().enumerate() {
+            column.add_to_slice(matrix.column_mut(k).as_mut_slice(), 1.0);
+        }
+        matrix
+    };
+    for (effect, location, (place, variable), form) in POINTS {
+        let site =
+            all.iter().find(|site| site.location.to_string() == place && site.variable.name == variable);
+        let largest = site.unwrap_or_else(|| panic!("{place} over {variable}")).largest();
+        let constants: Vec<f64> = match form {
+            // after each pose, or at no torque
+            Form::Step if variable == "number of poses before" => {
+                (1..poses).map(|k| (k as f64 - 0.5) / largest).collect()
+            }
+            // so many waves in a turn
+            Form::Harmonic => (1..8).map(|k| f64::from(k) * largest / TAU).collect(),
+            _ => vec![0.0],
+        };
+        let point = GrammarPoint { place, variable, form, sides: false };
+        let is_there = |entry: &&Entry| {
+            let candidate = &entry.candidate;
+            candidate.effect.name == effect && candidate.location.to_string().starts_with(location)
+        };
+        let mut likenesses =
+            own.iter().filter(is_there).map(|entry| likeness(&all, point, &constants, &columns(entry)));
+        assert!(likenesses.any(|likeness| likeness > 1.0 - 1e-6), "{effect}, {place} over {variable}");
+    }
+    let known: BTreeSet<&str> = POINTS.iter().map(|point| point.0).chain(NO_POINTS).collect();
+    assert_eq!(known, registry::ALL.iter().map(|own| own.effect.name).collect());
 }

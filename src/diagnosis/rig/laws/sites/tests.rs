@@ -1,7 +1,11 @@
 //! Laws on a published recording, with nothing of the library to explain it.
 
+use std::collections::BTreeSet;
+
 use super::*;
+use crate::diagnosis::rig::effects::registry;
 use crate::diagnosis::rig::model::wanted::Wanted;
+use crate::inference::law::points::{GrammarPoint, likeness};
 use crate::inference::law::propose;
 use crate::inference::{ForwardModel, diagnose};
 use crate::rig::readings::Readings;
@@ -34,70 +38,84 @@ fn the_load_cell_of_nist_is_quadratic_in_its_load() {
     assert!((second / expected - 1.0).abs() < 0.05, "{second} for {expected}");
 }
 
-/// A rod with a joint, loaded up and down with times and temperatures.
-const UP_AND_DOWN: &str = "axis,load_n,phase,time_s,temperature_c,dx_um,dy_um,dz_um
-y,5,load,0,20,1,2,3
-y,10,load,60,21,1,2,3
-y,5,unload,200,23,1,2,3
-z,5,load,300,22,1,2,3
-z,10,load,400,20,1,2,3
-z,5,unload,600,25,1,2,3
-";
-
-/// The column of a law: what it does to the data, but for its size.
-fn column(site: &Site, form: Form, s: f64, sides: bool) -> DVector<f64> {
-    let entry = |i: usize| {
-        let side = if sides { site.moves[i] } else { 1.0 };
-        let x = site.values[i] / site.largest();
-        site.directions[0].1[i] * side * form.functions(x, s)[form.count() - 1]
-    };
-    DVector::from_fn(site.values.len(), |i, _| entry(i))
+/// A rod with a joint and a bend, loaded up and down along each axis, at times and temperatures.
+fn up_and_down() -> (Readings, Rod) {
+    let mut text = "axis,load_n,phase,time_s,temperature_c,dx_um,dy_um,dz_um\n".to_owned();
+    let mut time = 0.0;
+    for axis in ["x", "y", "z"] {
+        for (k, load) in [2.0, 3.0, 6.0, 7.0, 10.0, 7.0, 6.0, 3.0, 2.0].into_iter().enumerate() {
+            let phase = if k < 5 { "load" } else { "unload" };
+            time += 20.0 + 7.0 * load;
+            let temperature = 20.0 + (time / 90.0f64).sin();
+            text += &format!("{axis},{load},{phase},{time},{temperature},1,2,3\n");
+        }
+    }
+    let rod =
+        include_str!("../../../../../rods/5.toml").replace("bend_radius_mm = 0.0", "bend_radius_mm = 40.0");
+    (Readings::from_text("f", &text).unwrap(), Rod::from_toml("rod", &(rod + JOINT)).unwrap())
 }
 
-/// Existing effects are points of the grammar: their columns are those of a law, but for the size.
+/// What the effects of the library are in the grammar.
+const POINTS: [(&str, &str, &str, Form, bool); 17] = [
+    ("stiffness_scale", "rod", "load", Form::Polynomial(1), false),
+    ("nonlinear_stiffness", "rod", "load", Form::Polynomial(2), false),
+    ("nonlinear_stiffness", "rod", "load", Form::Polynomial(3), false),
+    ("load_offset", "rod", "load", Form::Step, false),
+    ("friction", "rod", "load", Form::Step, true),
+    ("hysteresis", "rod", "load", Form::Polynomial(2), true),
+    ("sensor_lag", "slide", "time since the load was changed", Form::Polynomial(1), false),
+    ("backlash", "clamp", "load", Form::Step, false),
+    ("root_compliance", "root", "moment", Form::Polynomial(1), false),
+    ("joint_compliance", "sleeve", "moment", Form::Polynomial(1), false),
+    ("creep", "rod", "time since the load was changed", Form::Logarithm, false),
+    ("thermal_softening", "rod", "temperature above the lowest", Form::Polynomial(1), false),
+    ("sensor_scale", "dx", "reading", Form::Polynomial(1), false),
+    ("sensor_scale", "dy", "reading", Form::Polynomial(1), false),
+    ("sensor_scale", "dz", "reading", Form::Polynomial(1), false),
+    ("thermal_drift", "sensors", "temperature above the lowest", Form::Polynomial(1), false),
+    ("slip", "sensors", "number of readings before", Form::Step, false),
+];
+
+/// What the others say that no function of one variable at one place does: how a load or a
+/// displacement is shared among axes, or the compliance along the rod.
+const NO_POINTS: [&str; 4] =
+    ["load_misalignment", "sensor_misalignment", "shear_modulus", "bend_flexibility"];
+
+/// Existing effects are points of the grammar: what they do to the data is what a law does. Those
+/// that are none are listed, and are none.
 #[test]
 fn the_library_is_a_part_of_the_grammar() {
-    let text = include_str!("../../../../../rods/5.toml");
-    let rod = Rod::from_toml("rod", &(text.to_owned() + JOINT)).unwrap();
-    let readings = Readings::from_text("f", UP_AND_DOWN).unwrap();
+    let (readings, rod) = up_and_down();
     let (model, _) = RigModel::new(&readings, Some(&rod)).unwrap();
     let all = sites(&model, &DVector::zeros(model.data.len()));
-    let line = Form::Polynomial(1);
-    for (effect, parameters, place, variable, form, s, sides) in [
-        ("stiffness_scale", &["factor"][..], "rod", "load", line, 0.0, false),
-        ("nonlinear_stiffness", &["per_n"], "rod", "load", Form::Power, 2.0, false),
-        ("nonlinear_stiffness", &["per_n2"], "rod", "load", Form::Power, 3.0, false),
-        ("load_offset", &["force_n"], "rod", "load", Form::Step, 0.0, false),
-        ("friction", &["force_n"], "rod", "load", Form::Step, 0.0, true),
-        ("backlash", &["play_um"], "clamp", "load", Form::Step, 0.0, false),
-        ("root_compliance", &["bending", "torsion"], "root", "moment", line, 0.0, false),
-        ("joint_compliance", &["bending", "torsion"], "sleeve", "moment", line, 0.0, false),
-        ("sensor_scale", &["factor"], "dy", "reading", line, 0.0, false),
-        ("thermal_drift", &["um_per_k"], "sensors", "temperature above the lowest", line, 0.0, false),
-    ] {
-        let of_effect = model.candidates.iter().enumerate().filter(|(_, candidate)| {
-            let is_place = match (effect, &candidate.location) {
-                ("joint_compliance" | "sensor_scale", location) => location.to_string() == place,
-                _ => true,
-            };
-            candidate.effect.name == effect && is_place
-        });
-        let site =
-            all.iter().find(|site| site.location.to_string() == place && site.variable.name == variable);
-        let law = column(site.unwrap_or_else(|| panic!("{place}, {variable}")), form, s, sides);
-        let parallel = |(index, candidate): (usize, &crate::inference::Candidate)| {
-            let columns = model.columns(&[candidate.neutral(index)], 0);
-            let mut sum = DVector::zeros(law.len());
-            for (k, parameter) in candidate.parameters.iter().enumerate() {
-                if parameters.iter().any(|name| parameter.name.starts_with(name)) {
-                    sum += columns.column(k) / parameter.size;
-                }
-            }
-            sum.dot(&law).abs() / (sum.norm() * law.norm())
+    let largest = readings.rows.len() as f64;
+    let shares: Vec<f64> = (0..readings.rows.len()).map(|k| (k as f64 - 0.5) / largest).collect();
+    // t₀ of creep, s
+    let waits = |site: &Site| [1.0, 10.0, 60.0, 600.0].map(|t0| t0 / site.largest());
+    let like = |effect: &str, (place, variable, form, sides)| {
+        let point = GrammarPoint { place, variable, form, sides };
+        let constants = match form {
+            Form::Step if variable == "load" => vec![0.0],
+            Form::Step => shares.clone(),
+            _ => all.iter().filter(|site| site.variable.name == variable).flat_map(waits).collect(),
         };
-        let best = of_effect.map(parallel).filter(|c| c.is_finite()).fold(0.0, f64::max);
-        assert!(best > 1.0 - 1e-6, "{effect} {parameters:?}: {best}");
+        let own = model.candidates.iter().enumerate().filter(|(_, own)| own.effect.name == effect);
+        own.map(|(index, own)| model.columns(&[own.neutral(index)], 0))
+            .filter(|columns| columns.norm() > 0.0 && columns.iter().all(|value| value.is_finite()))
+            .map(|columns| likeness(&all, point, &constants, &columns))
+            .fold(0.0, f64::max)
+    };
+    for (effect, place, variable, form, sides) in POINTS {
+        let found = like(effect, (place, variable, form, sides));
+        assert!(found > 1.0 - 1e-6, "{effect}, {place} over {variable}: {found}");
     }
+    let points = POINTS.map(|point| (point.1, point.2, point.3, point.4));
+    for effect in NO_POINTS {
+        let most = points.iter().map(|point| like(effect, *point)).fold(0.0, f64::max);
+        assert!(most < 1.0 - 1e-6, "{effect} is a point: {most}");
+    }
+    let known: BTreeSet<&str> = POINTS.iter().map(|point| point.0).chain(NO_POINTS).collect();
+    assert_eq!(known, registry::ALL.iter().map(|own| own.effect.name).collect());
 }
 
 const JOINT: &str = "

@@ -1,0 +1,65 @@
+//! Whether an effect is a point of the grammar: for the tests of both libraries of effects.
+
+use nalgebra::DMatrix;
+
+use super::{Form, Site};
+
+/// A place with a variable, by their names, and what the law is there; `sides` where it has the
+/// sign of the last move.
+#[derive(Debug, Clone, Copy)]
+pub struct GrammarPoint {
+    pub place: &'static str,
+    pub variable: &'static str,
+    pub form: Form,
+    pub sides: bool,
+}
+
+/// cos of the least angle between what an effect may do to the data and what a law may do at this
+/// point, a constant there besides (zeros of the recording and numbers of the files are that): 1
+/// where one of the effect's columns is one of the law's. The number that is not linear is the
+/// best one of `constants`, shares of the variable's largest value.
+pub fn likeness(sites: &[Site], point: GrammarPoint, constants: &[f64], effect: &DMatrix<f64>) -> f64 {
+    let is_it =
+        |site: &&Site| site.location.to_string() == point.place && site.variable.name == point.variable;
+    let effect = basis(effect);
+    let mut best = 0.0;
+    for site in sites.iter().filter(is_it) {
+        for s in constants {
+            let between = basis(&columns(site, point, *s)).transpose() * &effect;
+            if !between.is_empty() {
+                best = between.singular_values().max().max(best);
+            }
+        }
+    }
+    best
+}
+
+/// What the law does to the data, for each direction its constant and its functions.
+fn columns(site: &Site, point: GrammarPoint, s: f64) -> DMatrix<f64> {
+    let each = 1 + point.form.count();
+    DMatrix::from_fn(site.values.len(), site.directions.len() * each, |i, k| {
+        let weight = site.directions[k / each].1[i];
+        if weight == 0.0 || site.values[i].is_nan() {
+            return 0.0;
+        }
+        let side = if point.sides { site.moves[i] } else { 1.0 };
+        match (k % each).checked_sub(1) {
+            None => weight,
+            Some(function) => {
+                weight * side * point.form.functions(site.values[i] / site.largest(), s)[function]
+            }
+        }
+    })
+}
+
+/// Orthonormal columns of the same span.
+fn basis(columns: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut scaled = columns.clone();
+    for mut column in scaled.column_iter_mut() {
+        let norm = column.norm();
+        column /= if norm > 0.0 { norm } else { 1.0 };
+    }
+    let svd = scaled.svd(true, false);
+    let rank = svd.singular_values.iter().filter(|value| **value > 1e-9).count();
+    svd.u.unwrap().columns(0, rank).into_owned()
+}

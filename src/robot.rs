@@ -141,7 +141,7 @@ impl Joint {
 /// # Errors
 /// [`Error::Input`](crate::Error::Input) where it is no number, or larger than
 /// [`limits::JOINT_VALUE`].
-pub fn joint_value(row: Row<'_>, column: &str) -> Result<f64> {
+pub(crate) fn joint_value(row: Row<'_>, column: &str) -> Result<f64> {
     let value = row.required_number(column)?;
     match value.abs() <= limits::JOINT_VALUE as f64 {
         true => Ok(value),

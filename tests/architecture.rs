@@ -249,7 +249,8 @@ fn the_ground_stands_on_nothing() {
     assert_eq!(members_needed("crates/base/Cargo.toml"), [""; 0]);
 }
 
-/// Words of rigs and robots, of which the engine has none outside its lists of places and variables.
+/// Words of rigs and robots, of which the engine has none outside its lists of places and
+/// variables.
 const PHYSICS: [&str; 24] = [
     "friction",
     "backlash",
@@ -320,6 +321,9 @@ fn no_effect_is_compared_by_its_name() {
     let is_asked = |file: &str| file.contains("diagnosis") || file.contains("inference");
     for Source { file, text, .. } in files("src").into_iter().filter(|source| is_asked(&source.file)) {
         let code = of_the_program(&file, &text);
+        // an example says what is found
+        let code: Vec<&str> = code.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+        let code = code.join("\n");
         let is_family = file.contains("/effects/") || file.contains("/tests");
         for name in &names {
             let literal = format!("\"{name}\"");
@@ -402,8 +406,8 @@ fn the_libraries_never_print() {
     }
 }
 
-/// Rooms whose fronts give functions to a user: what they re-export, by their files. The prelude has
-/// its own from them.
+/// Rooms whose fronts give functions to a user: what they re-export, by their files. The prelude
+/// has its own from them.
 const FRONTS: [&str; 13] = [
     "answer",
     "beam",
@@ -421,13 +425,30 @@ const FRONTS: [&str; 13] = [
 ];
 /// Functions of these fronts that take what only a finished diagnosis makes, or what only an engine
 /// of one's own would: their tests are their examples.
-const WITHOUT_EXAMPLE: [&str; 5] = ["law_destination", "minutes", "products", "remark", "sketch"];
+const WITHOUT_EXAMPLE: [&str; 6] = ["law_destination", "minutes", "products", "ranking", "remark", "sketch"];
 
-/// The functions that a file re-exports: lower-case names of its `pub use`.
-fn functions_given(text: &str) -> BTreeSet<String> {
+/// The functions that a file re-exports, each with the module that it is from: lower-case names of
+/// its `pub use`.
+fn functions_given(text: &str) -> BTreeSet<(String, String)> {
     let given = text.split("\npub use ").skip(1).filter_map(|rest| Some(rest.split_once(';')?.0));
-    let names = given.flat_map(|path| path.split(|c: char| !(c.is_alphanumeric() || c == '_')).rev());
-    names.filter(|name| name.starts_with(|c: char| c.is_ascii_lowercase())).map(str::to_owned).collect()
+    let parts = given.filter_map(|path| match path.split_once('{') {
+        Some((module, names)) => Some((module.trim_end_matches("::"), names.trim_end_matches('}'))),
+        None => path.rsplit_once("::"),
+    });
+    let all = parts.flat_map(|(path, names)| {
+        let module = path.rsplit("::").next().unwrap_or_default().to_owned();
+        names.split(',').map(move |name| (module.clone(), name.trim().to_owned()))
+    });
+    all.filter(|(_, name)| name.starts_with(|c: char| c.is_ascii_lowercase())).collect()
+}
+
+#[test]
+fn what_a_room_gives_is_read_with_where_it_is_from() {
+    let text = "mod a;\npub use a::b::{C, d};\npub use e::f;\nuse g::h;\n";
+    let found = functions_given(text);
+    let pairs: Vec<(&str, &str)> =
+        found.iter().map(|(module, name)| (module.as_str(), name.as_str())).collect();
+    assert_eq!(pairs, [("b", "d"), ("e", "f")]);
 }
 
 /// The documentation above each function that stands at the margin of a file.
@@ -458,7 +479,7 @@ fn every_function_for_users_has_an_example_that_asserts() {
             let is_front = *file == format!("src/{front}.rs");
             let module = file.trim_end_matches(".rs").rsplit('/').next().unwrap_or_default();
             for (name, above) in documented_functions(text) {
-                let is_given = is_front || given.contains(&name) && given.contains(module);
+                let is_given = is_front || given.contains(&(module.to_owned(), name.clone()));
                 if !is_given || WITHOUT_EXAMPLE.contains(&name.as_str()) {
                     continue;
                 }

@@ -180,8 +180,8 @@ pub(crate) fn ran(line: &str) -> &'static Ran {
     })
 }
 
-/// What is said by commands that rest on one another, in one directory: `lines` in their order, each
-/// of those that begin with a `+` as text and then as JSON.
+/// What is said by commands that rest on one another, in one directory: `lines` in their order,
+/// each of those that begin with a `+` as text and then as JSON.
 pub(crate) fn said_in_turn(lines: &[&str]) -> Vec<[String; 2]> {
     let sandbox = Sandbox::new();
     sandbox.write("poses.csv", "pose,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n1,0,10,80,5,6,7\n");

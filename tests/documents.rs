@@ -192,15 +192,19 @@ fn every_file_that_a_page_names_exists() {
 }
 
 /// Words of the output that need no glossary.
-const PLAIN: &str = "after against aligned alike along aluminium and asked because before better \
-     bettered beyond block breaks by calibrated carbon change chosen column compensated coordinate \
-     copied corrected criterion density diameter differ distrusted do drawing estimated evaluated \
-     everything expected explains first found from gamma geometry given headline hidden in index \
-     infeasible inner is judged key largest least left locate looked material maximise meaning min \
-     minimise minute more name not now of other outer part passes pipe proven quadratic radius \
-     ranking ratio reading reason recorded refined refused relax rotation sensitivities shared shown \
-     source supported swing table term testable the to tube unseen value wait wanted warning what \
-     where with word wrapped";
+const PLAIN: &str = "after against aligned alike along aluminium and answer answered asked assumed because before \
+     below best better bettered beyond bin block both breaks by calibrated called carbon case \
+     change chosen clean column command compensated content coordinate copied corrected count \
+     criterion density diameter differ difference distrusted do done draw drawing estimated \
+     evaluated everything expected explains failed failure false first folder found frequencies \
+     from gamma geometry given headline hidden in index infeasible inner input invented is judged \
+     key largest least left less locate looked material maximise meaning met min minimise minute \
+     missed more name named not now of ok open option or other outer outside over pair part \
+     passes pipe placed program proposed proven quadratic radius ranking ratio reading reason \
+     recorded recording refined refused relax remarked rig right rotation second sensitivities \
+     share shared shown silent single size source state subcommand supported swing table term \
+     testable tested the to tube twice unanswered unknown unseen value wait wanted warning what \
+     when where with word worst wrapped wrongly";
 /// Units, and what is counted in them.
 const UNITS: &str = "deg gpa hz kg mm mpa mrad nm percent rad rpy um urad xyz";
 

@@ -317,8 +317,8 @@ fn warn(warning: &str) {
     print_message("warning:", Some(YELLOW), warning);
 }
 
-/// Prints a sentence to stderr after a word of the program's own: on a terminal in lines that fit, in a
-/// file or a pipe one line.
+/// Prints a sentence to stderr after a word of the program's own: on a terminal in lines that fit,
+/// in a file or a pipe one line.
 pub fn print_message(word: &str, colour: Option<u8>, sentence: &str) {
     match std::io::stderr().is_terminal() {
         true => {

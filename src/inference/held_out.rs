@@ -35,7 +35,8 @@ pub struct HeldOut {
     pub after: f64,
     /// Share of the squares that vanishes, 1 − after²/before².
     pub gain: f64,
-    /// 95 % interval of `gain`, from folds that are drawn again; `None` with fewer than three folds.
+    /// 95 % interval of `gain`, from folds that are drawn again; `None` with fewer than three
+    /// folds.
     pub gain_interval: Option<(f64, f64)>,
     /// Hypotheses of the folds.
     pub hypotheses: Vec<Vec<Term>>,

@@ -22,8 +22,8 @@ const FAINT: f64 = 1e-6;
 
 /// Joint values with the index of their clamp, clamp after clamp.
 ///
-/// From candidates of random configurations that bring the ball to each clamp, those are picked one by
-/// one that add most to the determinant of the information matrix, and so to O1.
+/// From candidates of random configurations that bring the ball to each clamp, those are picked one
+/// by one that add most to the determinant of the information matrix, and so to O1.
 pub(super) fn choose(
     truth: &Setup,
     free: &[Parameter],

@@ -78,9 +78,9 @@ impl Candidates {
     /// From a source, without those that break a limit or are like another one.
     ///
     /// # Errors
-    /// [`Error::NotApplicable`] for places that no configuration reaches; [`Error::Input`] for a table
-    /// without the robot's joint columns, with a clamp that the campaign does not know, or without
-    /// a pose that keeps the limits.
+    /// [`Error::NotApplicable`] for places that no configuration reaches; [`Error::Input`] for a
+    /// table without the robot's joint columns, with a clamp that the campaign does not know, or
+    /// without a pose that keeps the limits.
     pub(super) fn new(
         around: &Surroundings,
         source: &Source,

@@ -1,5 +1,7 @@
 //! The documents say what the program knows: tables of effects come from the registries.
 
+#![allow(clippy::unwrap_used)]
+
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;

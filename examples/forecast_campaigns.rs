@@ -114,7 +114,7 @@ fn campaign(seed: u64) -> Result<Happened> {
     }
     let noise = (plan.repeatability.powi(2) / 3.0 + plan.sensor_noise.powi(2)).sqrt();
     let budget = Budget::of(&campaign, Some(noise), Some(plan.repeatability))?;
-    let budget = Budget { instrument: plan.scanner_noise, clamps, ..budget };
+    let budget = budget.with_instrument(plan.scanner_noise).with_clamps(clamps);
     let setup = planned_setup(&campaign)?;
     let poses: Vec<(usize, Vec<f64>)> = (0..campaign.measurements.len())
         .map(|row| (campaign.measurements.rows[row].group, campaign.measurements.joints(row).to_vec()))

@@ -26,12 +26,13 @@ pub fn main(arguments: &[String]) -> rodcal::Result<()> {
 }
 
 fn report(poses: usize) -> Report {
-    Report {
-        title: "Stiffness of rods 5# and 2#".into(),
-        headline: "Rod 5# bends 33.0 ± 0.2 µm/N along Y at its tip, 1.2 % more than the finite-element model says."
-            .into(),
-        warnings: vec!["Rod 2#: only one reading per load; standard errors are taken from rod 5#.".into()],
-        sections: vec![
+    let mut report = Report::new(
+        "Stiffness of rods 5# and 2#",
+        "Rod 5# bends 33.0 ± 0.2 µm/N along Y at its tip, 1.2 % more than the finite-element model says.",
+    );
+    report.warnings =
+        vec!["Rod 2#: only one reading per load; standard errors are taken from rod 5#.".into()];
+    report.sections = vec![
             Section::new(
                 "Compliance",
                 vec![
@@ -61,12 +62,13 @@ fn report(poses: usize) -> Report {
                 calibration(poses).into_iter().map(|f| Block::Figure(f.clone().captioned(format!("{} Invented.", f.caption)))).collect(),
             ),
             Section::new("Later results", vec![Block::Figure(joint_angles()), Block::Figure(histogram())]),
-        ],
-        provenance: vec![
-            ("Readings".into(), "stiffness_data/rod5.csv, 36 readings, sha256 0c1d9f6b2f…".into()),
-            ("Rod".into(), "rods/rod5.toml".into()),
-            ("Options".into(), "robust = false, confidence = 95 %".into()),
-        ], ..Report::default() }
+        ];
+    report.provenance = vec![
+        ("Readings".into(), "stiffness_data/rod5.csv, 36 readings, sha256 0c1d9f6b2f…".into()),
+        ("Rod".into(), "rods/rod5.toml".into()),
+        ("Options".into(), "robust = false, confidence = 95 %".into()),
+    ];
+    report
 }
 
 fn compliance_table() -> Table {
@@ -213,14 +215,7 @@ fn joint_angles() -> Figure {
         chart
     };
     let panels = (0..3).map(panel).collect();
-    Figure {
-        name: "residual-angle".into(),
-        caption: "Residuals over angles.".into(),
-        panels,
-        columns: 3,
-        shared_legend: true,
-        ..Figure::default()
-    }
+    Figure::new(panels, 3).with_shared_legend().named("residual-angle").captioned("Residuals over angles.")
 }
 
 fn histogram() -> Figure {

@@ -18,9 +18,9 @@ fn main() -> ExitCode {
     match cli::run(&arguments).and_then(deliver) {
         Ok(status) => status,
         Err(error) => {
-            cli::output::say("error:", Some(cli::output::RED), &error.to_string());
+            cli::output::print_message("error:", Some(cli::output::RED), &error.to_string());
             if let Some(hint) = error.hint() {
-                cli::output::say("hint:", None, hint);
+                cli::output::print_message("hint:", None, hint);
             }
             ExitCode::from(2)
         }

@@ -14,6 +14,7 @@
 
 mod beside;
 mod calibrated;
+pub mod configurations;
 mod defaults;
 mod effect;
 mod effects_file;
@@ -26,7 +27,6 @@ mod laws;
 mod minimal;
 mod moves;
 mod parameter;
-pub mod postures;
 mod predict;
 mod setup;
 mod standard_uncertainty;
@@ -141,7 +141,7 @@ impl Joint {
 /// # Errors
 /// [`Error::Input`](crate::Error::Input) where it is no number, or larger than
 /// [`limits::JOINT_VALUE`].
-pub fn joint_value(row: Row<'_>, column: &str) -> Result<f64> {
+pub(crate) fn joint_value(row: Row<'_>, column: &str) -> Result<f64> {
     let value = row.required_number(column)?;
     match value.abs() <= limits::JOINT_VALUE as f64 {
         true => Ok(value),
@@ -151,6 +151,7 @@ pub fn joint_value(row: Row<'_>, column: &str) -> Result<f64> {
 
 /// What a joint does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Motion {
     /// Turns about its z axis.
     Revolute,
@@ -158,7 +159,8 @@ pub enum Motion {
     Prismatic,
 }
 
-/// The five parameters of Hⱼ at qⱼ = 0; see [`crate::robot`].
+/// The five parameters of Hⱼ at qⱼ = 0; see [`crate::robot`]. A sixth would be another convention,
+/// and another type.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Hayati {
     /// About z, rad.

@@ -80,6 +80,7 @@ pub struct Pipe<T = f64> {
 
 /// A mass on the centreline that carries no load.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct LumpedMass<T = f64> {
     /// Name, for people.
     pub name: String,
@@ -93,6 +94,7 @@ pub struct LumpedMass<T = f64> {
 ///
 /// At a sharp corner its axis is that of the pipe on the flange's side.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Joint<T = f64> {
     /// Name, for people and for the diagnosis.
     pub name: String,
@@ -104,8 +106,30 @@ pub struct Joint<T = f64> {
     pub torsion: T,
 }
 
+impl Joint {
+    /// A joint at a station (m from the flange) with its compliances, rad/(N·m).
+    pub fn new(name: impl Into<String>, station: f64, bending: f64, torsion: f64) -> Joint {
+        Joint { name: name.into(), station, bending, torsion }
+    }
+}
+
+impl LumpedMass {
+    /// A mass (kg) at a station (m from the flange).
+    pub fn new(name: impl Into<String>, station: f64, mass: f64) -> LumpedMass {
+        LumpedMass { name: name.into(), station, mass }
+    }
+}
+
+impl Sleeve {
+    /// A sleeve between two stations (m from the flange).
+    pub fn new(name: impl Into<String>, from: f64, to: f64, pipe: Pipe) -> Sleeve {
+        Sleeve { name: name.into(), from, to, pipe }
+    }
+}
+
 /// A pipe that bears together with the straight pipe that it sits on, or in.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Sleeve<T = f64> {
     /// Name, for people.
     pub name: String,

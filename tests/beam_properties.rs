@@ -106,16 +106,12 @@ fn rod() -> impl Strategy<Value = Rod> {
             rod.bend_radius = if bend < 0.01 { 0.0 } else { bend * l1.min(l2) / ((PI - gamma) / 2.0).tan() };
             rod.bend = pipe(outer, wall / 2.0);
             let station = at * rod.length();
-            rod.masses.push(LumpedMass { name: "ring".into(), station, mass: 0.05 });
+            rod.masses.push(LumpedMass::new("ring", station, 0.05));
             let (from, to) = (rod.bend_end(), rod.length());
             let collar = Pipe { section: Round::tube(outer, outer * 0.8).into(), ..rod.pipe1.clone() };
-            rod.sleeves.push(Sleeve {
-                name: "collar".into(),
-                from: from + 0.5 * at * (to - from),
-                to: from + (0.5 * at + 0.4) * (to - from),
-                pipe: collar,
-            });
-            rod.joints.push(Joint { name: "sleeve".into(), station, bending: 1e-5, torsion: 2e-5 });
+            let [begins, ends] = [0.5 * at, 0.5 * at + 0.4].map(|share| from + share * (to - from));
+            rod.sleeves.push(Sleeve::new("collar", begins, ends, collar));
+            rod.joints.push(Joint::new("sleeve", station, 1e-5, 2e-5));
             rod
         },
     )

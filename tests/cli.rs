@@ -180,6 +180,25 @@ pub(crate) fn ran(line: &str) -> &'static Ran {
     })
 }
 
+/// What is said by commands that rest on one another, in one directory: `lines` in their order,
+/// each of those that begin with a `+` as text and then as JSON.
+pub(crate) fn said_in_turn(lines: &[&str]) -> Vec<[String; 2]> {
+    let sandbox = Sandbox::new();
+    sandbox.write("poses.csv", "pose,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n1,0,10,80,5,6,7\n");
+    let mut said = Vec::new();
+    for line in lines {
+        match line.strip_prefix('+') {
+            Some(asked) => said.push(["", " --json"].map(|json| {
+                let answer = sandbox.run(&format!("{asked}{json}"));
+                assert!(answer.status < Some(2), "{line}: {}", answer.stderr);
+                answer.stdout
+            })),
+            None => drop(sandbox.run(line).succeeded()),
+        }
+    }
+    said
+}
+
 /// Steel rod and readings, carbon rod and readings, real readings: every command that makes a
 /// report.
 const REPORTS: [&str; 10] = [

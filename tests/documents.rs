@@ -1,5 +1,7 @@
 //! The documents say what the program knows: tables of effects come from the registries.
 
+#![allow(clippy::unwrap_used)]
+
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
@@ -8,7 +10,7 @@ use rodcal::diagnosis::{calibration, rig};
 use rodcal::inference::Effect;
 use serde_json::Value;
 
-use crate::cli::ran;
+use crate::cli::{ran, said_in_turn};
 
 fn document(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
@@ -132,16 +134,79 @@ fn what_is_linked_exists() {
     assert!(count > 100, "{count}");
 }
 
+/// Files and folders of the project, by their paths in it.
+fn files_of_the_project() -> BTreeSet<String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (mut folders, mut files) = (vec![root.to_owned()], BTreeSet::new());
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if name == "target" || name.starts_with('.') && name != ".ci" {
+                continue;
+            }
+            files.insert(path.strip_prefix(root).unwrap().to_string_lossy().replace('\\', "/"));
+            if path.is_dir() {
+                folders.push(path);
+            }
+        }
+    }
+    files
+}
+
+/// What stands between single backticks in the words of a page, code left out.
+fn in_backticks(page: &str) -> Vec<&str> {
+    let mut is_code = false;
+    let words = page.lines().filter(|line| {
+        let is_fence = line.trim_start().starts_with("```");
+        is_code ^= is_fence;
+        !is_code && !is_fence
+    });
+    words.flat_map(|line| line.split('`').skip(1).step_by(2)).collect()
+}
+
+/// Sources by the end of their paths (`mechanics/load_history.rs`), and whatever a path from the
+/// root names.
+#[test]
+fn every_file_that_a_page_names_exists() {
+    assert_eq!(in_backticks("a `b` c `d/e.rs`\n```\n`f`\n```\n`g`"), ["b", "d/e.rs", "g"]);
+    const ROOTS: [&str; 8] =
+        ["src/", "crates/", "tests/", "benches/", "python/", "examples/", "docs/", "stiffness_data/"];
+    let files = files_of_the_project();
+    let (mut unknown, mut count) = (Vec::new(), 0);
+    for page in files.iter().filter(|file| file.ends_with(".md")) {
+        for name in in_backticks(&document(page)) {
+            let is_source = [".rs", ".py", ".snap"].iter().any(|end| name.ends_with(end));
+            let is_path = ROOTS.iter().any(|start| name.starts_with(start));
+            if !(is_source || is_path) || name.contains([' ', '*', '{', '<', '…', '#', ':']) {
+                continue;
+            }
+            count += 1;
+            let name = name.trim_end_matches('/');
+            let is_end = |file: &String| file.strip_suffix(name).is_some_and(|rest| rest.ends_with('/'));
+            let is_known = files.contains(name) || !is_path && files.iter().any(is_end);
+            if !is_known {
+                unknown.push(format!("{page}: {name}"));
+            }
+        }
+    }
+    assert!(count > 100 && unknown.is_empty(), "{count} files are named; there is no {unknown:#?}");
+}
+
 /// Words of the output that need no glossary.
-const PLAIN: &str = "after against aligned alike along aluminium and asked because before better \
-     bettered beyond block breaks by calibrated carbon change chosen column compensated coordinate \
-     copied corrected criterion density diameter differ distrusted do drawing estimated evaluated \
-     everything expected explains first found from gamma geometry given headline hidden in index \
-     infeasible inner is judged key largest least left locate looked material maximise meaning min \
-     minimise minute more name not now of other outer part passes pipe proven quadratic radius \
-     ranking ratio reading reason recorded refined refused relax rotation sensitivities shared shown \
-     source supported swing table term testable the to tube unseen value wait wanted warning what \
-     where with word wrapped";
+const PLAIN: &str = "after against aligned alike along aluminium and answer answered asked assumed because before \
+     below best better bettered beyond bin block both breaks by calibrated called carbon case \
+     change chosen clean column command compensated content coordinate copied corrected count \
+     criterion density diameter differ difference distrusted do done draw drawing estimated \
+     evaluated everything expected explains failed failure false first folder found frequencies \
+     from gamma geometry given headline hidden in index infeasible inner input invented is judged \
+     key largest least left less locate looked material maximise meaning met min minimise minute \
+     missed more name named not now of ok open option or other outer outside over pair part \
+     passes pipe placed program proposed proven quadratic radius ranking ratio reading reason \
+     recorded recording refined refused relax remarked rig right rotation second sensitivities \
+     share shared shown silent single size source state subcommand supported swing table term \
+     testable tested the to tube twice unanswered unknown unseen value wait wanted warning what \
+     when where with word worst wrapped wrongly";
 /// Units, and what is counted in them.
 const UNITS: &str = "deg gpa hz kg mm mpa mrad nm percent rad rpy um urad xyz";
 
@@ -199,10 +264,26 @@ fn the_glossary_has_every_term_of_the_output() {
         "design rod examples/design.toml",
         "design rig rods/2.toml --between joint_compliance,root_compliance",
         "design poses campaigns/tx90-5/campaign.toml --count 60",
+        "compliance rods/5.toml",
+        "compare campaigns/tx90-5/campaign.toml --draws 50",
+        "compare campaigns/tx90-5/campaign.toml --forecast",
     ] {
         said += &headers(&ran(line).answer.stdout);
         let answer = &ran(&format!("{line} --json")).answer;
         keys(&serde_json::from_str(&answer.stdout).unwrap_or_else(|e| panic!("{line}: {e}")), &mut said);
+    }
+    for [text, json] in said_in_turn(&[
+        "+predict robots/tx90.toml poses.csv",
+        "+simulate sim --rod rods/5.toml --poses 6 --validation 4 --force",
+        "compliance rods/5.toml --out first",
+        "compliance rods/2.toml --out second",
+        "+compare-runs first second",
+        "trial make sealed --seed 3 --cases 1 --rig",
+        "trial answer sealed",
+        "+trial score sealed",
+    ]) {
+        said += &headers(&text);
+        keys(&serde_json::from_str(&json).unwrap_or_else(|e| panic!("{json}: {e}")), &mut said);
     }
     let snapshots = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots");
     for entry in std::fs::read_dir(snapshots).unwrap() {

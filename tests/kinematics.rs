@@ -90,6 +90,7 @@ fn tip(setup: &Setup, q: &[f64], torque: &[f64], by: Parameter) -> [Dual; 3] {
         match joint.motion {
             Motion::Revolute => theta += yielding + q[j],
             Motion::Prismatic => d += yielding + q[j],
+            other => unreachable!("{other:?}"),
         }
         for next in [
             turn(2, theta),

@@ -69,7 +69,7 @@ fn for_each_reference(check: impl Fn(&str, &Rod, &Physics, &Reference)) {
         for reference in &case.results {
             let shear = reference.theory == "timoshenko";
             let name = format!("{}, {}", case.name, reference.theory);
-            check(&name, &rod, &Physics { shear, ..Physics::default() }, reference);
+            check(&name, &rod, &Physics::default().with_shear(shear), reference);
         }
     }
 }

@@ -322,7 +322,7 @@ fn huber_and_tukey_resist_gross_outliers_that_ruin_least_squares() {
     }
     let text = rows.join("\n");
     let slope = |robust| {
-        let options = Options { robust, ..Options::default() };
+        let options = Options::default().with_robust(robust);
         made::fit_with(&text, None, &options).lines.remove(0)
     };
     assert!((slope(Robust::None).slope.value / UM - 20.0).abs() > 0.8);
@@ -340,7 +340,7 @@ fn huber_and_tukey_resist_gross_outliers_that_ruin_least_squares() {
 #[test]
 fn two_loads_without_repeats_have_no_standard_error_and_a_warning() {
     for robust in [Robust::None, HUBER, TUKEY] {
-        let options = Options { robust, ..Options::default() };
+        let options = Options::default().with_robust(robust);
         let fit = made::fit_with("axis,load_n,dz_um\nz,5,50\nz,10,101\n", None, &options);
         assert_eq!(fit.lines[0].slope.std_error, None);
         assert_eq!(fit.lines[0].slope.half_width_95(), None);
@@ -442,7 +442,7 @@ fn physics_left_out_of_the_model_goes_into_r() {
     let rig = Rig { noise: 0.0, resolution: 0.0, ..Rig::default() };
     let text = readings(&rig, &[made::STEEL.truth("y"), made::STEEL.truth("z")], 1);
     let r = |physics| {
-        let options = Options { physics, ..Options::default() };
+        let options = Options::default().with_physics(physics);
         made::fit_with(&text, Some(&rod(&made::STEEL)), &options).measured.unwrap().rod_ratio.value
     };
     assert_relative_eq!(r(made::EULER_BERNOULLI), 1.0, max_relative = 1e-9);

@@ -57,7 +57,7 @@ fn a_fit_of_many_readings_ends() {
 #[test]
 fn a_beam_of_many_elements_ends() {
     let rod = rod();
-    let options = ComplianceOptions { elements: 1_000_000, ..ComplianceOptions::default() };
+    let options = ComplianceOptions::default().with_elements(1_000_000);
     ends(&[20, 300], || drop(answer::compliance(rod.clone(), &options)));
 }
 

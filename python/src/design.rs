@@ -79,13 +79,14 @@ pub fn design_rod(
 ) -> PyResult<Answer> {
     let space = design.space(py)?;
     let count = count.map(|count| within(py, "count", count, 1, 20_000)).transpose()?;
-    let asked = answer::DesignRod {
-        base: base.map(|rod| rod.get().rod.clone()),
-        refine: refine.map(|number| within(py, "refine", number, 1, u32::MAX as usize)).transpose()?,
-        refine_goal,
-        campaign: campaign.map(|campaign| (&campaign.get().campaign, count)),
-        seed,
-    };
+    let asked = answer::DesignRod::default()
+        .with_base(base.map(|rod| rod.get().rod.clone()))
+        .with_refined(
+            refine.map(|number| within(py, "refine", number, 1, u32::MAX as usize)).transpose()?,
+            refine_goal,
+        )
+        .for_campaign(campaign.map(|campaign| (&campaign.get().campaign, count)))
+        .with_seed(seed);
     let searched = asked.searched(&space, samples).or_raise(py)?;
     let mut search = Search::new(&space, searched).or_raise(py)?;
     if let Some(parts) = parts {
@@ -147,8 +148,7 @@ impl Expected {
 
     fn budget(&self, campaign: &rodcal::calibration::Campaign) -> rodcal::Result<Budget> {
         let [noise, repeatability] = [self.noise_um, self.repeatability_um].map(|um| um.map(|um| um * UM));
-        let budget = Budget::of(campaign, noise, repeatability)?;
-        Ok(Budget { instrument: self.instrument_um * UM, ..budget })
+        Ok(Budget::of(campaign, noise, repeatability)?.with_instrument(self.instrument_um * UM))
     }
 }
 
@@ -175,12 +175,11 @@ impl Limits {
             (true, None) => TableHeight::Lowest,
             (true, Some(height)) => TableHeight::At(finite(py, "table_mm", height)? * MM),
         };
-        Ok(PoseLimits {
-            cone: within(py, "cone_deg", self.cone_deg, 0.0, 180.0)? * DEG,
-            clear: within(py, "clear_mm", self.clear_mm, 0.0, 1e6)? * MM,
-            change: within(py, "change_deg", self.change_deg, 0.0, 180.0)? * DEG,
-            table,
-        })
+        Ok(PoseLimits::default()
+            .with_cone(within(py, "cone_deg", self.cone_deg, 0.0, 180.0)? * DEG)
+            .with_clearance(within(py, "clear_mm", self.clear_mm, 0.0, 1e6)? * MM)
+            .with_change(within(py, "change_deg", self.change_deg, 0.0, 180.0)? * DEG)
+            .with_table(table))
     }
 }
 
@@ -207,18 +206,17 @@ pub fn design_poses(
         ("forecast", PoseCriterion::Forecast),
     ];
     expected.check(py)?;
-    let wanted = Wanted {
-        count: within(py, "count", count, 1, 20_000)?,
-        criterion: choice(py, "criterion", criterion, &criteria)?,
-        source: match candidates {
-            Some((name, text)) => Source::File(name, text),
-            None => Source::Generated(within(py, "generate", generate, 1, 200_000)?),
-        },
-        limits: limits.limits(py)?,
-        mode: mode_named(py, mode)?,
-        at: expected.place(py)?,
-        seed,
+    let count = within(py, "count", count, 1, 20_000)?;
+    let criterion = choice(py, "criterion", criterion, &criteria)?;
+    let source = match candidates {
+        Some((name, text)) => Source::File(name, text),
+        None => Source::Generated(within(py, "generate", generate, 1, 200_000)?),
     };
+    let wanted = Wanted::new(count, criterion, source)
+        .with_limits(limits.limits(py)?)
+        .with_mode(mode_named(py, mode)?)
+        .used_at(expected.place(py)?)
+        .with_seed(seed);
     let campaign = &campaign.get().campaign;
     run(py, progress, Progress::default(), |progress| {
         let tell = |_: PoseStep| progress.more(1);
@@ -243,7 +241,7 @@ pub fn forecast(
     let rods: Vec<rodcal::rod::Rod> = rods.iter().map(|rod| rod.get().rod.clone()).collect();
     let campaign = &campaign.get().campaign;
     run(py, progress, Progress::of_jobs(), |_| {
-        let budget = Budget { seed, ..expected.budget(campaign)? };
+        let budget = expected.budget(campaign)?.with_seed(seed);
         answer::forecast(campaign, &rods, budget, &at, count)
     })
     .map(Answer)

@@ -15,7 +15,7 @@ use crate::work::{Progress, run};
 
 /// Which rods a search looks at.
 fn searched(py: Python<'_>, space: &DesignSpace, samples: Option<u64>, seed: u64) -> PyResult<Searched> {
-    DesignRod { seed, ..DesignRod::default() }.searched(space, samples).or_raise(py)
+    DesignRod::default().with_seed(seed).searched(space, samples).or_raise(py)
 }
 
 /// What other machines need of a design: its text and that of its catalogue; how many rods a search

@@ -19,7 +19,7 @@ const MOST_ELEMENTS: usize = 1_000_000;
 
 fn physics(py: Python<'_>, theory: &str) -> PyResult<Physics> {
     let shear = choice(py, "theory", theory, &[("timoshenko", true), ("euler-bernoulli", false)])?;
-    Ok(Physics { shear, ..Physics::default() })
+    Ok(Physics::default().with_shear(shear))
 }
 
 #[pyfunction]
@@ -43,15 +43,13 @@ pub fn compliance(
     if let Some(percent) = damping_percent.filter(|percent| !(*percent > 0.0 && *percent < 100.0)) {
         return Err(wrong(py, "damping_percent", percent.to_string(), "above 0 and below 100".into()));
     }
-    let options = ComplianceOptions {
-        mode: choice(py, "mode", mode, &[("fea", Mode::Fea), ("calc", Mode::Calc)])?,
-        physics: physics(py, theory.unwrap_or("timoshenko"))?,
-        elements: within(py, "elements", elements, 1, MOST_ELEMENTS)?,
-        contact_force,
-        load_station: load_station_mm.map(|mm| mm * MM),
-        read_station: read_station_mm.map(|mm| mm * MM),
-        damping_ratio: damping_percent.map(|percent| 0.01 * percent),
-    };
+    let options = ComplianceOptions::default()
+        .with_mode(choice(py, "mode", mode, &[("fea", Mode::Fea), ("calc", Mode::Calc)])?)
+        .with_physics(physics(py, theory.unwrap_or("timoshenko"))?)
+        .with_elements(within(py, "elements", elements, 1, MOST_ELEMENTS)?)
+        .with_contact_force(contact_force)
+        .with_stations(load_station_mm.map(|mm| mm * MM), read_station_mm.map(|mm| mm * MM))
+        .with_damping_ratio(damping_percent.map(|percent| 0.01 * percent));
     let rod = rod.get().rod.clone();
     run(py, None, Progress::default(), |_| answer::compliance(rod, &options)).map(Answer)
 }
@@ -72,11 +70,10 @@ pub fn rig_fit(
         ("huber", Robust::Huber { k: 1.345, scale }),
         ("tukey", Robust::Tukey { c: 4.685, scale }),
     ];
-    let options = rig::Options {
-        physics: physics(py, theory)?,
-        elements: within(py, "elements", elements, 1, MOST_ELEMENTS)?,
-        robust: choice(py, "robust", robust, &weights)?,
-    };
+    let options = rig::Options::default()
+        .with_physics(physics(py, theory)?)
+        .with_elements(within(py, "elements", elements, 1, MOST_ELEMENTS)?)
+        .with_robust(choice(py, "robust", robust, &weights)?);
     let rod = rod.map(|rod| &rod.get().rod);
     let readings = &readings.get().readings;
     run(py, progress, Progress::of_jobs(), |_| answer::rig_fit(readings, rod, &options)).map(Answer)

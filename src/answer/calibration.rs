@@ -13,6 +13,20 @@ use crate::report;
 /// Calibrates, with the calibrated robot as a file; `folds` also predicts every pose from a
 /// calibration without it. `others` are files that may have been meant.
 ///
+/// ```
+/// use rodcal::answer::calibrate;
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let others = Neighbours::default();
+/// let (answer, calibration) = calibrate(&campaign, Mode::Fea, &Options::default(), None, &others)?;
+/// assert_eq!(answer.status, 0); // plausible
+/// let rms = answer.json["residual"]["rms_um"].as_f64().unwrap_or(0.0);
+/// assert!((10.0..40.0).contains(&rms), "{rms}"); // the noise of a coordinate is 18 µm
+/// assert!(calibration.is_converged && answer.files[0].0 == "calibrated.toml");
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`calibration::calibrate`] and [`calibration::cross_validate`].
 pub fn calibrate<'c>(
@@ -30,6 +44,27 @@ pub fn calibrate<'c>(
 
 /// As [`calibrate`], with `held_out` for what predicts every pose from a calibration without it:
 /// others may have done that.
+///
+/// ```
+/// use rodcal::answer::calibrate_held_out;
+/// use rodcal::calibration::{folds_of, predict_held_out, CrossValidation};
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let (options, others) = (Options::default(), Neighbours::default());
+/// let compensation = Compensation::new(&campaign, Mode::Fea)?;
+/// let (answer, _) = calibrate_held_out(&campaign, Mode::Fea, &options, Some(3), &others, &|found, folds| {
+///     // fold by fold, as a cluster would
+///     let mut predicted = Vec::new();
+///     for fold in 0..folds {
+///         predicted.extend(predict_held_out(&campaign, found, &compensation, folds, fold..fold + 1, &options)?);
+///     }
+///     assert_eq!(folds_of(&campaign, folds)?.iter().max(), Some(&2));
+///     CrossValidation::of(&campaign, folds, predicted)
+/// })?;
+/// assert_eq!(answer.json["cross_validation"]["folds"], 3);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`calibrate`], and what `held_out` says.
@@ -71,6 +106,17 @@ pub fn calibrate_held_out<'c>(
 /// Every mode of compensation that the campaign allows, and which differences are significant.
 /// `progress` is called at every draw.
 ///
+/// ```
+/// use rodcal::answer::compare;
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let answer = compare(&campaign, &CompareOptions::default().with_draws(2), &|_| {})?;
+/// let modes = answer.json["modes"].as_array().expect("one for each mode");
+/// assert_eq!((modes.len(), &modes[0]["mode"]), (4, &"none".into()));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`calibration::compare`].
 pub fn compare(
@@ -84,6 +130,20 @@ pub fn compare(
 }
 
 /// As [`compare`], from draws that others may have made: the means of all of them, in order.
+///
+/// ```
+/// use rodcal::answer::compare_drawn;
+/// use rodcal::calibration::Draws;
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let draws = Draws::new(&campaign, &CompareOptions::default().with_draws(2))?;
+/// // in two parts, as two machines would
+/// let drawn = [draws.means(0..1, &|_| {}), draws.means(1..2, &|_| {})].concat();
+/// let answer = compare_drawn(&campaign, draws, drawn);
+/// assert_eq!(answer.json["modes"].as_array().map(Vec::len), Some(4));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 pub fn compare_drawn(campaign: &Campaign, draws: Draws<'_>, drawn: Vec<Option<Vec<f64>>>) -> Answer {
     let comparison = draws.comparison(drawn);
     let mut report = report::comparison::report(campaign, &comparison);
@@ -92,6 +152,17 @@ pub fn compare_drawn(campaign: &Campaign, draws: Draws<'_>, drawn: Vec<Option<Ve
 }
 
 /// Where it all comes from.
+///
+/// ```
+/// use rodcal::answer::provenance;
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let list = provenance(&campaign);
+/// assert_eq!(list[0], ("campaign".to_owned(), "campaigns/tx90-5/campaign.toml".to_owned()));
+/// assert_eq!(list[1].1, "builtin:tx90"); // the robot
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 pub fn provenance(campaign: &Campaign) -> Vec<(String, String)> {
     let mut list = vec![
         ("campaign".to_owned(), campaign.file.clone()),
@@ -115,6 +186,18 @@ pub fn provenance(campaign: &Campaign) -> Vec<(String, String)> {
 }
 
 /// The calibrated robot in the format of its file.
+///
+/// ```
+/// use rodcal::answer::calibrated_robot;
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let calibration = calibrate(&campaign, Mode::Fea, &Options::default())?;
+/// let files = calibrated_robot(&campaign, &calibration)?;
+/// // of a URDF there would be a second file, for what it has no place for
+/// assert_eq!((files.len(), files[0].0.as_str()), (1, "calibrated.toml"));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`write_back`].

@@ -13,12 +13,13 @@ use crate::rod::Rod;
 
 /// What is asked about the rods of a search.
 #[derive(Default)]
+#[non_exhaustive]
 pub struct DesignRod<'c> {
     /// A rod that the designs are compared with.
     pub base: Option<Rod>,
-    /// The design of the front, from 1, that is bettered between the grid's values.
+    /// The design of the front, from 1, that is refined between the grid's values.
     pub refine: Option<usize>,
-    /// What is bettered then: an objective of the design file, or several with their weights, as
+    /// What is improved then: an objective of the design file, or several with their weights, as
     /// "c_rod_um=2,mass_g=1"; without it the first one.
     pub refine_goal: Option<String>,
     /// The robot that they are ranked for, and how many poses are chosen for each rod.
@@ -27,7 +28,29 @@ pub struct DesignRod<'c> {
     pub seed: u64,
 }
 
-impl DesignRod<'_> {
+impl<'c> DesignRod<'c> {
+    /// With every random number from this seed.
+    pub fn with_seed(self, seed: u64) -> Self {
+        DesignRod { seed, ..self }
+    }
+
+    /// Compared with this rod, where there is one.
+    pub fn with_base(self, base: Option<Rod>) -> Self {
+        DesignRod { base, ..self }
+    }
+
+    /// With the design of this number of the front, from 1, refined for a goal
+    /// ([`DesignRod::refine_goal`]).
+    pub fn with_refined(self, number: Option<usize>, goal: Option<String>) -> Self {
+        DesignRod { refine: number, refine_goal: goal, ..self }
+    }
+
+    /// Ranked for the robot of a campaign, with so many poses chosen for each rod where that is
+    /// said.
+    pub fn for_campaign(self, campaign: Option<(&'c Campaign, Option<usize>)>) -> Self {
+        DesignRod { campaign, ..self }
+    }
+
     /// Which rods of `space` are looked at; `samples` of them, or all.
     ///
     /// # Errors
@@ -42,6 +65,28 @@ impl DesignRod<'_> {
 }
 
 /// The Pareto front of rods, as rod files too; with status 1 where no rod keeps all limits.
+///
+/// ```
+/// use rodcal::answer::{DesignRod, design_rod};
+/// use rodcal::design::{DesignSpace, search};
+///
+/// let space = DesignSpace::from_toml("design.toml", "
+///     [geometry]
+///     l1_mm = [150, 300]
+///     l2_mm = [400, 525]
+///     [catalogue]
+///     file = \"builtin\"
+///     [objectives]
+///     minimise = [\"c_rod_um\"]
+/// ", &|_| unreachable!())?;
+/// let asked = DesignRod::default();
+/// let found = search(&space, asked.searched(&space, None)?, &|_| {})?;
+/// let answer = design_rod(space, found, &asked)?;
+/// let json = answer.whole_json();
+/// assert_eq!(json["front"].as_array().map(Vec::len), Some(1)); // of one goal there is one best rod
+/// assert_eq!(json["front"][0]["rod"]["geometry"]["l1_mm"], 150.0);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`Study::of_found`], [`Study::with_refined`] and [`for_robot`].
@@ -72,6 +117,20 @@ pub fn design_rod(space: DesignSpace, found: Found, asked: &DesignRod<'_>) -> Re
 
 /// The poses that a calibration should measure, as a table too.
 ///
+/// ```
+/// use rodcal::answer::design_poses;
+/// use rodcal::design::{Budget, PoseCriterion, Source, Wanted};
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6))?;
+/// let wanted = Wanted::new(20, PoseCriterion::O1, Source::Generated(60));
+/// let answer = design_poses(&campaign, wanted, budget, &|_| {})?;
+/// assert_eq!(answer.json["poses"].as_array().map(Vec::len), Some(20));
+/// assert_eq!(answer.json["criterion"], "o1");
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Argument`] for fewer candidates than poses; as [`PoseStudy::new`].
 pub fn design_poses(
@@ -97,6 +156,20 @@ pub fn design_poses(
 
 /// What to measure on a rig: to distinguish the effects of these names with such odds, or to know
 /// r_rod within a 95 % interval of `r_rod_width` of it.
+///
+/// ```
+/// use rodcal::answer::design_rig;
+/// use rodcal::diagnosis::rig::planned::Bench;
+/// use rodcal::prelude::*;
+///
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let bench = Bench { largest_load: 10.0, noise: 2e-6, is_at_tip: true };
+/// // r_rod within 1 %
+/// let answer = design_rig(&rod, &[], Some(0.01), 20.0, &bench)?;
+/// assert_eq!(answer.files[0].0, "readings.csv");
+/// assert!(design_rig(&rod, &["ghost".to_owned()], None, 20.0, &bench).is_err()); // no such effect
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`Error::Argument`] for an effect that nobody knows; as [`plan`] and [`plan_ratio`].

@@ -17,6 +17,19 @@ use crate::rod::Rod;
 /// `others` are rods that may have been on the rig. With `apply`, rod and readings with what was
 /// found are its files, where something can be applied.
 ///
+/// ```
+/// use rodcal::answer::diagnose_rig;
+/// use rodcal::prelude::*;
+///
+/// // reconstructed with 0.09 kg (0.88 N) of friction in the slide
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let readings = Readings::read("stiffness_data/5.csv".as_ref())?;
+/// let answer = diagnose_rig(&readings, Some(&rod), &[], None)?;
+/// assert_eq!((answer.status, &answer.json["verdict"]), (1, &"mismatch".into()));
+/// assert_eq!(answer.json["findings"][0]["effect"], "friction");
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`diagnose_with`].
 pub fn diagnose_rig(
@@ -29,6 +42,27 @@ pub fn diagnose_rig(
 }
 
 /// The same, with effects that the lab describes itself.
+///
+/// ```
+/// use rodcal::answer::diagnose_rig_with;
+/// use rodcal::diagnosis::rig::OwnEffect;
+/// use rodcal::prelude::*;
+///
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let readings = Readings::read("stiffness_data/5.csv".as_ref())?;
+/// let own = OwnEffect::from_toml("own.toml", "
+///     [[effect]]
+///     name = \"foot\"
+///     words = \"a foot\"
+///     place = \"clamp\"
+///     variable = \"load\"
+///     law = \"a*tanh(F/3)\"
+///     parameter = [{ name = \"a\", size = 20 }]
+/// ")?;
+/// let answer = diagnose_rig_with(&readings, Some(&rod), &[], &own, None)?;
+/// assert_eq!(answer.json["findings"][0]["effect"], "friction"); // which explains the readings better
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`diagnose_with`].
@@ -68,6 +102,17 @@ pub type Content<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>>;
 /// What the residuals of a calibration show that its model leaves out. `others` are files that may
 /// have been meant. With `apply`, the content of a file that the campaign names, the corrected
 /// robot and campaign are its files, where something can be corrected.
+///
+/// ```
+/// use rodcal::answer::diagnose_calibration;
+/// use rodcal::prelude::*;
+///
+/// // simulated with nothing but noise, and a rod that the readings of its rig describe
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let answer = diagnose_calibration(&campaign, Mode::Meas, &Neighbours::default(), None)?;
+/// assert_eq!((answer.status, &answer.json["verdict"]), (0, &"consistent".into()));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`mend`] and what calibrates; [`crate::Error::File`] where a file that is copied cannot be

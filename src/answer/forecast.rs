@@ -12,6 +12,18 @@ use crate::rod::Rod;
 /// there are none) and every mode. `count` poses are chosen by O1; without it those of the
 /// recording are taken.
 ///
+/// ```
+/// use rodcal::answer::forecast;
+/// use rodcal::design::{Budget, Where};
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6))?;
+/// let answer = forecast(&campaign, &[], budget, &Where::Validation, None)?;
+/// assert_eq!(answer.json["forecasts"][0]["modes"].as_array().map(Vec::len), Some(4));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`rods_and_modes`] and [`Forecaster::new`].
 pub fn forecast(
@@ -25,7 +37,7 @@ pub fn forecast(
     let unseen = Forecaster::new(campaign, planned_setup(campaign)?, budget.clone(), at)?.unseen;
     let basis = Basis {
         budget,
-        unseen: unseen.words,
+        unseen: unseen.description,
         is_aligned: unseen.is_aligned,
         has_clamps: !campaign.clamps.is_empty(),
     };

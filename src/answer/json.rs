@@ -71,6 +71,17 @@ impl Serialize for Whole<'_> {
 /// Whatever a terminal would obey instead of showing it is escaped; what is read from it is the
 /// same.
 ///
+/// ```
+/// use rodcal::answer::{LongList, write_json};
+///
+/// let list = LongList::new("poses", 2, |k| (10 * k).into());
+/// let mut text = Vec::new();
+/// write_json(&serde_json::json!({ "poses": null, "count": 2 }), Some(&list), &mut text)?;
+/// let read: serde_json::Value = serde_json::from_slice(&text)?;
+/// assert_eq!(read["poses"][1], 10);
+/// # Ok::<(), std::io::Error>(())
+/// ```
+///
 /// # Errors
 /// What `to` says.
 pub fn write_json(json: &Value, long: Option<&LongList>, mut to: impl Write) -> io::Result<()> {

@@ -12,6 +12,17 @@ use crate::rod::Rod;
 const MOST: usize = 50;
 
 /// The rods and robots in the folders of a campaign's own, by their names relative to the campaign.
+///
+/// ```
+/// use rodcal::answer::neighbours;
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let beside = neighbours(&campaign);
+/// assert_eq!(beside.rods.len(), 6 - 1); // rods/1.toml to 6.toml, but for its own
+/// assert!(beside.robots.is_empty()); // its robot is none of a file
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 pub fn neighbours(campaign: &Campaign) -> Neighbours {
     let directory = Path::new(&campaign.file).parent().unwrap_or(Path::new(""));
     let beside = |name: &str| -> Vec<(String, PathBuf)> {
@@ -42,6 +53,13 @@ pub fn neighbours(campaign: &Campaign) -> Neighbours {
 
 /// The rods whose files stand beside `file`, by their file names: one of them may have been on the
 /// rig.
+///
+/// ```
+/// use rodcal::answer::rods_beside;
+///
+/// let names: Vec<String> = rods_beside("rods/5.toml".as_ref()).into_iter().map(|(name, _)| name).collect();
+/// assert_eq!(names, ["1.toml", "2.toml", "3.toml", "4.toml", "6.toml"]);
+/// ```
 pub fn rods_beside(file: &Path) -> Vec<(String, Rod)> {
     let named = |path: PathBuf| {
         let name = path.file_name()?.to_string_lossy().into_owned();

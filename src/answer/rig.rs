@@ -9,6 +9,18 @@ use crate::rod::Rod;
 
 /// Lines through readings, r and the measured compliance of `rod`; without one, lines alone.
 ///
+/// ```
+/// use rodcal::answer::rig_fit;
+/// use rodcal::prelude::*;
+///
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let readings = Readings::read("stiffness_data/5.csv".as_ref())?;
+/// let answer = rig_fit(&readings, Some(&rod), &rig::Options::default())?;
+/// let r_rod = answer.json["r_rod"].as_f64().unwrap_or(0.0);
+/// assert!((r_rod - 1.013).abs() < 0.005, "{r_rod}"); // the paper's Table 2
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`rig::fit`].
 pub fn rig_fit(readings: &Readings, rod: Option<&Rod>, options: &Options) -> Result<Answer> {

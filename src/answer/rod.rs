@@ -9,6 +9,7 @@ use crate::rod::Rod;
 
 /// How a rod is looked at.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct ComplianceOptions {
     /// Which model the headline and the JSON are about.
     pub mode: Mode,
@@ -41,7 +42,50 @@ impl Default for ComplianceOptions {
     }
 }
 
+impl ComplianceOptions {
+    /// About this model.
+    pub fn with_mode(self, mode: Mode) -> Self {
+        ComplianceOptions { mode, ..self }
+    }
+
+    /// With this beam theory.
+    pub fn with_physics(self, physics: Physics) -> Self {
+        ComplianceOptions { physics, ..self }
+    }
+
+    /// With so many elements.
+    pub fn with_elements(self, elements: usize) -> Self {
+        ComplianceOptions { elements, ..self }
+    }
+
+    /// With a contact force of this size in c_rod, N.
+    pub fn with_contact_force(self, contact_force: f64) -> Self {
+        ComplianceOptions { contact_force, ..self }
+    }
+
+    /// Loaded at one arc length from the flange and read at another, m; `None` is the tip.
+    pub fn with_stations(self, load_station: Option<f64>, read_station: Option<f64>) -> Self {
+        ComplianceOptions { load_station, read_station, ..self }
+    }
+
+    /// With this damping ratio ζ, where it is known.
+    pub fn with_damping_ratio(self, damping_ratio: Option<f64>) -> Self {
+        ComplianceOptions { damping_ratio, ..self }
+    }
+}
+
 /// C^F, C^g and c_rod of a rod's model.
+///
+/// ```
+/// use rodcal::answer::{ComplianceOptions, compliance};
+/// use rodcal::rod::Rod;
+///
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let answer = compliance(rod, &ComplianceOptions::default())?;
+/// let c_rod = answer.json["c_rod_um"].as_f64().unwrap_or(0.0);
+/// assert!((c_rod / 403.7 - 1.0).abs() < 0.015, "{c_rod}"); // the paper's Table 2, 403.7 µm
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`Study::new`] and [`Study::with_stations`].

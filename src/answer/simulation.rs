@@ -28,6 +28,15 @@ pub struct Simulated {
 
 /// What a campaign calls the file of the robot `robot`, a file or `builtin:tx90`, and its text.
 ///
+/// ```
+/// use rodcal::answer::named_robot;
+///
+/// let (name, text) = named_robot("builtin:tx90")?;
+/// assert!(name == "builtin:tx90" && text.contains("name = \"TX90\""));
+/// assert_eq!(named_robot("robots/six-axis.urdf")?.0, "robot.urdf");
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Argument`] for a robot that the program does not carry, [`Error::File`] for a file that
 /// cannot be read.
@@ -52,6 +61,21 @@ pub fn named_robot(robot: &str) -> Result<(String, String)> {
 /// Simulates a campaign of `robot`, whose file the campaign calls `named.0` and whose text is
 /// `named.1`, with a rod and the text of its file. `campaign` is where it will stand; `progress` is
 /// called at every candidate and every pose.
+///
+/// ```
+/// use rodcal::answer::{named_robot, simulate};
+/// use rodcal::calibration::simulate::Plan;
+/// use rodcal::prelude::*;
+///
+/// let named = named_robot("builtin:tx90")?;
+/// let robot = Robot::from_text(&named.0, &named.1, None, None)?;
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let plan = Plan::of_poses(8, 5);
+/// let simulated = simulate(&robot, named, (&rod, rod.to_toml(&[])), &plan, "campaign.toml", &|| {})?;
+/// assert_eq!(simulated.poses, 40); // 8 at each of the paper's 5 clamps
+/// assert_eq!(simulated.json["r_rod"], 1.0);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`simulate_telling`].

@@ -12,6 +12,7 @@ use crate::units::MM;
 
 /// Which physics the model contains; [`Physics::default`] is all of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Physics {
     /// Extension of the pipes, 1/EA.
     pub axial: bool,
@@ -55,6 +56,31 @@ impl Physics {
         masses: false,
         tip_mass: false,
     };
+
+    /// With the shear of the pipes, as Timoshenko, or without it, as Euler and Bernoulli.
+    ///
+    /// ```
+    /// use rodcal::beam::Physics;
+    ///
+    /// let euler_bernoulli = Physics::WHOLE.with_shear(false);
+    /// assert!(!euler_bernoulli.shear && euler_bernoulli.joints);
+    /// ```
+    pub const fn with_shear(mut self, shear: bool) -> Physics {
+        self.shear = shear;
+        self
+    }
+
+    /// With the extension of the pipes or without it.
+    pub const fn with_axial(mut self, axial: bool) -> Physics {
+        self.axial = axial;
+        self
+    }
+
+    /// With the stiffness and the weight of the sleeves or without them.
+    pub const fn with_sleeves(mut self, sleeves: bool) -> Physics {
+        self.sleeves = sleeves;
+        self
+    }
 }
 
 impl Default for Physics {

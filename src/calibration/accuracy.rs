@@ -41,6 +41,17 @@ pub struct Accuracy {
 
 /// Judges a calibration by its validation poses, else by its cross-validation, and never by the
 /// poses that it was fitted to. A fit that did not converge or is not plausible does not pass.
+///
+/// ```
+/// use rodcal::calibration::{AccuracyVerdict, accuracy};
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let calibration = calibrate(&campaign, Mode::Fea, &Options::default())?;
+/// let judged = accuracy(None, &calibration, None); // no limit was stated
+/// assert_eq!((judged.verdict, judged.judged_by), (AccuracyVerdict::NotEvaluated, Some("validation")));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 pub fn accuracy(
     limits: Option<&AccuracyLimits>,
     calibration: &Calibration,

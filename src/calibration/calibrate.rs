@@ -76,6 +76,17 @@ pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> R
 
 /// The nominal robot where the rough start puts it.
 ///
+/// ```
+/// use rodcal::calibration::start;
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let setup = start(&campaign)?;
+/// // close enough for a fit: the campaign states where its base is
+/// assert!((0..3).all(|axis| (setup.base().origin[axis] - campaign.base[axis]).abs() < 5e-3));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`crate::linalg::thin_svd`]; none in practice.
 pub fn start(campaign: &Campaign) -> Result<Setup<'_>> {
@@ -92,6 +103,17 @@ pub fn start(campaign: &Campaign) -> Result<Setup<'_>> {
 }
 
 /// The complete and minimal set of the robot, with the user's constraints.
+///
+/// ```
+/// use rodcal::calibration::{free_parameters, start};
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let compensation = Compensation::new(&campaign, Mode::Fea)?;
+/// let free = free_parameters(&campaign, &start(&campaign)?, &compensation);
+/// assert_eq!(free.len(), 32); // the paper's Table 1
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 pub fn free_parameters(campaign: &Campaign, start: &Setup, compensation: &Compensation) -> Vec<Parameter> {
     let has_world = matches!(campaign.measurements.targets, Targets::Points(_));
     let constraints = &campaign.constraints;

@@ -16,6 +16,21 @@ use crate::robot::{Kinematics, Parameter, Setup};
 /// Calibrates `free` parameters on a recording, from a given start, without validation: for folds
 /// and bootstrap samples.
 ///
+/// ```
+/// use rodcal::calibration::{calibrate_from, free_parameters, start};
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let compensation = Compensation::new(&campaign, Mode::Fea)?;
+/// let start = start(&campaign)?;
+/// let free = free_parameters(&campaign, &start, &compensation);
+/// // every second pose
+/// let half = campaign.measurements.subset(&(0..60).step_by(2).collect::<Vec<_>>());
+/// let found = calibrate_from(&campaign, &half, start, &free, &compensation, &Options::default())?;
+/// assert!(found.is_converged && found.residuals().len() == 30 && found.validation.is_none());
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`super::calibrate()`].
 pub fn calibrate_from<'c>(

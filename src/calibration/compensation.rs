@@ -298,6 +298,17 @@ pub(super) fn largest_torques(robot: &Robot, setup: &Setup, payload: Body) -> Ve
 
 /// The modes that a campaign's files allow, in the paper's order; Calc only where the closed form
 /// applies to the rod.
+///
+/// ```
+/// use rodcal::calibration::modes;
+/// use rodcal::prelude::*;
+///
+/// let mut campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// assert_eq!(modes(&campaign), Mode::ALL);
+/// campaign.readings = None;
+/// assert_eq!(modes(&campaign), [Mode::None, Mode::Calc, Mode::Fea]);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 pub fn modes(campaign: &Campaign) -> Vec<Mode> {
     Mode::ALL.into_iter().filter(|&mode| Compensation::new(campaign, mode).is_ok()).collect()
 }

@@ -68,6 +68,17 @@ pub fn cross_validate(
 
 /// Fold of each row where so many are asked for, numbered from 0.
 ///
+/// ```
+/// use rodcal::calibration::folds_of;
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let folds = folds_of(&campaign, 5)?;
+/// assert_eq!(folds.iter().filter(|&&fold| fold == 0).count(), 15); // whole blocks of poses
+/// assert!(folds_of(&campaign, 61).is_err());
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Argument`] for more folds than poses.
 pub fn folds_of(campaign: &Campaign, folds: usize) -> Result<Vec<usize>> {
@@ -84,6 +95,21 @@ pub fn folds_of(campaign: &Campaign, folds: usize) -> Result<Vec<usize>> {
 
 /// Row and deviation of every pose of these folds, each from a calibration without its fold, m: a
 /// part of a cross-validation.
+///
+/// ```
+/// use rodcal::calibration::predict_held_out;
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let options = Options::default();
+/// let calibration = calibrate(&campaign, Mode::Fea, &options)?;
+/// let compensation = Compensation::new(&campaign, Mode::Fea)?;
+/// // the first of five folds
+/// let predicted = predict_held_out(&campaign, &calibration, &compensation, 5, 0..1, &options)?;
+/// assert_eq!(predicted.len(), 15);
+/// assert!(predicted.iter().all(|(_, deviation)| deviation.norm() < 300e-6));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`cross_validate`].

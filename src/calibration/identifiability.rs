@@ -53,6 +53,15 @@ impl UnidentifiedDirection {
 /// How far a parameter of a robot as built may be from its nominal value, SI. The largest torque on
 /// each joint, N·m, makes compliances comparable: no drive deflects by more than 10 mrad. Without
 /// it a compliance may be anything.
+///
+/// ```
+/// use rodcal::calibration::plausible_range;
+/// use rodcal::robot::Parameter;
+///
+/// assert_eq!(plausible_range(Parameter::D(2), &[]), 0.02); // 20 mm
+/// // a drive that carries 50 N·m deflects by no more than 10 mrad
+/// assert_eq!(plausible_range(Parameter::Compliance(0), &[50.0]), 0.01 / 50.0);
+/// ```
 pub fn plausible_range(parameter: Parameter, largest_torques: &[f64]) -> f64 {
     match parameter {
         // base and tool may be anywhere, but a rough start has been there: what it has not seen, no

@@ -18,6 +18,17 @@ use crate::units::MM;
 
 /// The nominal robot where the campaign's recording puts it, or, without one, where the file says.
 ///
+/// ```
+/// use rodcal::calibration::planned_setup;
+/// use rodcal::prelude::*;
+///
+/// let mut campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// campaign.measurements = campaign.measurements.subset(&[]);
+/// let setup = planned_setup(&campaign)?; // nothing was recorded: where the file says
+/// assert_eq!(setup.base().origin.as_slice(), &campaign.base[..3]);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`start`].
 pub fn planned_setup(campaign: &Campaign) -> Result<Setup<'_>> {
@@ -31,6 +42,19 @@ pub fn planned_setup(campaign: &Campaign) -> Result<Setup<'_>> {
 /// How well each free parameter is known before anybody measures, SI: what the drawing (its
 /// standard uncertainties times `scale`), the class of the drives and the user say; of base and
 /// tool how far a rough start may be off.
+///
+/// ```
+/// use rodcal::calibration::{known_before, planned_setup};
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let setup = planned_setup(&campaign)?;
+/// let free = [Parameter::A(1), Parameter::Alpha(1)];
+/// let known = known_before(&campaign, &setup, &free, None, 1.0);
+/// // the robot file states nothing: 1 mm and 0.1°
+/// assert!((known[0] - 1e-3).abs() < 1e-12 && (known[1] - 0.1f64.to_radians()).abs() < 1e-12);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 pub fn known_before(
     campaign: &Campaign,
     setup: &Setup,
@@ -173,6 +197,16 @@ impl<'c> Planned<'c> {
 /// Where the ball can be held: the campaign's clamps, its sockets where the nominal robot has them,
 /// or one place without a name for a tracker, which sees the ball anywhere. With it whether the
 /// places are unknown numbers.
+///
+/// ```
+/// use rodcal::calibration::{places, planned_setup};
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let (places, are_unknown) = places(&campaign, &planned_setup(&campaign)?);
+/// assert_eq!((places.len(), are_unknown), (5, false)); // its clamps, whose frames it states
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`planned_setup`].

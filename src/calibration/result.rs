@@ -80,7 +80,7 @@ pub struct Calibration<'c> {
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct Estimated {
-    /// Which.
+    /// The parameter of robot, base or tool.
     pub parameter: Parameter,
     /// Its nominal value or first guess, SI.
     pub nominal: f64,

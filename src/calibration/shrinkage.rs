@@ -44,7 +44,7 @@ pub(super) struct Drawing {
     known: Vec<Option<(f64, f64)>>,
     /// What the density of the data has besides their squares: its slope by each free parameter.
     slopes: Vec<f64>,
-    /// s.
+    /// Scale s of all standard uncertainties of the drawing, which the data may correct.
     pub scale: f64,
     /// How many of the numbers of the geometry the data determine; the drawing does the rest.
     determined: f64,

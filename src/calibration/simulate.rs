@@ -24,7 +24,7 @@ use super::compensation::{Compensation, Mode};
 use super::problem::Pass;
 use crate::compliance::{Compliance, PAPER_CONTACT_FORCE, StaticLaws};
 use crate::error::Result;
-use crate::robot::postures::{anywhere, is_above_table};
+use crate::robot::configurations::{anywhere, is_above_table};
 use crate::robot::{Body, Kinematics, Parameter, Robot, Setup, minimal_parameters};
 use crate::rod::Rod;
 use crate::spatial::Pose;
@@ -79,6 +79,24 @@ pub fn simulate<'r>(robot: &'r Robot, rod: &Rod, model: &Compliance, plan: &Plan
 
 /// [`simulate`], which takes seconds for a thousand poses; `progress` is called for every candidate
 /// that is found and for every pose that is taken.
+///
+/// ```
+/// use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+///
+/// use rodcal::calibration::simulate::{Plan, simulate_telling};
+/// use rodcal::prelude::*;
+///
+/// let (file, text) = Robot::builtin("tx90").expect("the program carries it");
+/// let robot = Robot::from_text(file, text, None, None)?;
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let model = Compliance::of_model(&rod, &Physics::default(), 20)?;
+/// let calls = AtomicUsize::new(0);
+/// let count = || _ = calls.fetch_add(1, Relaxed);
+/// let simulation = simulate_telling(&robot, &rod, &model, &Plan::of_poses(8, 5), &count)?;
+/// assert_eq!(simulation.measurements.len(), 40);
+/// assert!(calls.into_inner() >= 80); // as many candidates as poses at least
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`simulate`].

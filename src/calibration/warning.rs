@@ -48,7 +48,7 @@ pub enum Warning {
     },
     /// More combinations than anybody wants to read one by one.
     ManyNotIdentified {
-        /// How many.
+        /// Number of combinations of parameters that the data do not identify.
         combinations: usize,
         /// The parameters that do not stand on data.
         parameters: Vec<Parameter>,
@@ -71,14 +71,14 @@ pub enum Warning {
     },
     /// A parameter went farther than a robot as built can be from its drawing.
     Implausible {
-        /// Which.
+        /// The parameter of robot, base or tool.
         parameter: Parameter,
         /// Its correction, SI.
         correction: f64,
     },
     /// A parameter is many standard uncertainties from the robot file.
     FarFromDrawing {
-        /// Which.
+        /// The parameter of robot, base or tool.
         parameter: Parameter,
         /// Its correction, SI.
         correction: f64,

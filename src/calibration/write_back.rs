@@ -33,6 +33,20 @@ pub fn write_back(campaign: &Campaign, calibration: &Calibration) -> Result<(Str
 /// The same with more comments; `sd` is how well the robot predicts poses that were held out, m, in
 /// place of the scatter that the calibration leaves.
 ///
+/// ```
+/// use rodcal::calibration::write_back_with;
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let calibration = calibrate(&campaign, Mode::Fea, &Options::default())?;
+/// let comments = ["Measured on a Monday.".to_owned()];
+/// let (name, text) = write_back_with(&campaign, &calibration, Some(40e-6), &comments)?;
+/// assert!(text.contains("# Measured on a Monday."));
+/// let sd = Robot::from_text(&name, &text, None, None)?.tip.and_then(|tip| tip.sd);
+/// assert!(sd.is_some_and(|sd| (sd - 40e-6).abs() < 1e-9), "{sd:?}");
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`write_back`].
 pub fn write_back_with(
@@ -74,6 +88,16 @@ pub fn write_back_with(
 
 /// What a URDF has no place for, in a file beside it: tip, uncertainty, calibrated ranges, effects
 /// and compliances. `None` for a table, which holds them itself.
+///
+/// ```
+/// use rodcal::calibration::write_beside;
+/// use rodcal::prelude::*;
+///
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let calibration = calibrate(&campaign, Mode::Fea, &Options::default())?;
+/// assert_eq!(write_beside(&campaign, &calibration, None), None); // its robot is a table
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 pub fn write_beside(
     campaign: &Campaign,
     calibration: &Calibration,

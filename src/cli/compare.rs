@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rodcal::calibration::{Campaign, CompareOptions, Options};
-use rodcal::design::Budget;
 use rodcal::rod::Rod;
 use rodcal::{Error, Result, answer};
 
@@ -75,7 +74,7 @@ impl Compare {
     fn run_forecast(&self) -> Result<Outcome> {
         let campaign = Campaign::read_plan(&self.campaign)?;
         let rods: Vec<Rod> = self.rods.iter().map(|path| Rod::read(path)).collect::<Result<_>>()?;
-        let budget = Budget { seed: self.seed, ..self.expected.budget(&campaign)? };
+        let budget = self.expected.budget(&campaign)?.with_seed(self.seed);
         let at = self.expected.place()?;
         let count = self.count.map(|count| count as usize);
         Ok(Outcome::from(answer::forecast(&campaign, &rods, budget, &at, count)?).seeded(self.seed))

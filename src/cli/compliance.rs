@@ -88,18 +88,16 @@ fn damping(text: &str) -> std::result::Result<f64, String> {
 
 impl Compliance {
     pub fn run(&self) -> Result<Outcome> {
-        let options = ComplianceOptions {
-            mode: match self.mode {
+        let options = ComplianceOptions::default()
+            .with_mode(match self.mode {
                 CliMode::Calc => Mode::Calc,
                 CliMode::Fea => Mode::Fea,
-            },
-            physics: self.theory.unwrap_or(Theory::Timoshenko).physics(),
-            elements: self.elements,
-            contact_force: self.contact_force.unwrap_or_else(paper_contact_force),
-            load_station: self.load_station.map(|mm| mm * MM),
-            read_station: self.read_station.map(|mm| mm * MM),
-            damping_ratio: self.damping_percent.map(|percent| 0.01 * percent),
-        };
+            })
+            .with_physics(self.theory.unwrap_or(Theory::Timoshenko).physics())
+            .with_elements(self.elements)
+            .with_contact_force(self.contact_force.unwrap_or_else(paper_contact_force))
+            .with_stations(self.load_station.map(|mm| mm * MM), self.read_station.map(|mm| mm * MM))
+            .with_damping_ratio(self.damping_percent.map(|percent| 0.01 * percent));
         let mut answer = answer::compliance(Rod::read(&self.rod)?, &options)?;
         if let (CliMode::Calc, Some(Theory::Timoshenko)) = (self.mode, self.theory) {
             answer.report.warnings.push(

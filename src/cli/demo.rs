@@ -46,11 +46,11 @@ const DIAGNOSED: &str = "2#";
 pub const DIRECTORY: &str = "reports/demo";
 
 pub fn run() -> Result<Outcome> {
-    let [mut rod_page, mut robot_page, mut why_page] = PAGES.map(|(page, title, _)| Report {
-        page: page.into(),
-        pages: links(),
-        title: title.into(),
-        ..Report::default()
+    let [mut rod_page, mut robot_page, mut why_page] = PAGES.map(|(page, title, _)| {
+        let mut report = Report::new(title, "");
+        report.page = page.into();
+        report.pages = links();
+        report
     });
     let wrapped = |words: &str| wrapped_within(words, width());
     let (mut results, mut words, mut fitted) = (Vec::new(), String::new(), String::new());
@@ -121,15 +121,11 @@ pub fn run() -> Result<Outcome> {
     said.extend(cards.get(1).map(|card| format!("TX90: {} {without}", short(card).to_lowercase())));
     // the rest of it stands on its page
     said.extend(pages[2].headline.split_once(". ").map(|(first, _)| format!("{first}.")));
-    let index = Report {
-        pages: links(),
-        title: "rodcal demo".into(),
-        headline: said.join(" "),
-        cards,
-        warnings: vec![RECONSTRUCTED.to_owned()],
-        provenance,
-        ..Report::default()
-    };
+    let mut index = Report::new("rodcal demo", said.join(" "));
+    index.pages = links();
+    index.cards = cards;
+    index.warnings = vec![RECONSTRUCTED.to_owned()];
+    index.provenance = provenance;
     let json = json!({
         "rods": results,
         "load_cell": report::rig::json(&fit, &readings, None),

@@ -152,13 +152,13 @@ impl DesignRod {
         let base = self.base.as_deref().map(Rod::read).transpose()?;
         let all = space.combinations();
         let campaign = self.campaign.as_deref().map(Campaign::read_plan).transpose()?;
-        let asked = answer::DesignRod {
-            base,
-            refine: self.refine.map(|number| number as usize),
-            refine_goal: self.refine_goal.clone(),
-            campaign: campaign.as_ref().map(|campaign| (campaign, self.count.map(|count| count as usize))),
-            seed: self.seed,
-        };
+        let asked = answer::DesignRod::default()
+            .with_base(base)
+            .with_refined(self.refine.map(|number| number as usize), self.refine_goal.clone())
+            .for_campaign(
+                campaign.as_ref().map(|campaign| (campaign, self.count.map(|count| count as usize))),
+            )
+            .with_seed(self.seed);
         let searched = asked.searched(&space, self.samples)?;
         let count = self.samples.map_or(all, |samples| samples.min(all));
         let progress = Progress::new("looking at rods", usize::try_from(count).unwrap_or(usize::MAX));

@@ -314,12 +314,12 @@ fn to_stderr(word: &str, line: &str) {
 }
 
 fn warn(warning: &str) {
-    say("warning:", Some(YELLOW), warning);
+    print_message("warning:", Some(YELLOW), warning);
 }
 
-/// A sentence on stderr after a word of the program's own: on a terminal in lines that fit, in a
-/// file or a pipe one line.
-pub fn say(word: &str, colour: Option<u8>, sentence: &str) {
+/// Prints a sentence to stderr after a word of the program's own: on a terminal in lines that fit,
+/// in a file or a pipe one line.
+pub fn print_message(word: &str, colour: Option<u8>, sentence: &str) {
     match std::io::stderr().is_terminal() {
         true => {
             let lines = text::hanging(&format!("{word} "), &visible(sentence), columns());

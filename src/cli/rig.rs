@@ -77,15 +77,14 @@ impl Fit {
     fn run(&self) -> Result<Outcome> {
         let rod = if self.rod == Path::new("linear") { None } else { Some(Rod::read(&self.rod)?) };
         let readings = Readings::read(&self.readings)?;
-        let options = rig::Options {
-            physics: self.theory.physics(),
-            elements: self.elements,
-            robust: match self.robust {
+        let options = rig::Options::default()
+            .with_physics(self.theory.physics())
+            .with_elements(self.elements)
+            .with_robust(match self.robust {
                 Weights::None => Robust::None,
                 Weights::Huber => Robust::Huber { k: 1.345, scale: RobustScale::Mad },
                 Weights::Tukey => Robust::Tukey { c: 4.685, scale: RobustScale::Mad },
-            },
-        };
+            });
         let mut answer = answer::rig_fit(&readings, rod.as_ref(), &options)?;
         let model = rod.as_ref().map_or("none, straight lines".into(), |_| self.rod.display().to_string());
         answer.report.provenance = vec![

@@ -15,7 +15,7 @@ pub enum Theory {
 impl Theory {
     /// The physics of a beam model by this theory.
     pub fn physics(self) -> Physics {
-        Physics { shear: self == Theory::Timoshenko, ..Physics::default() }
+        Physics::default().with_shear(self == Theory::Timoshenko)
     }
 }
 

@@ -40,6 +40,13 @@ pub struct Tube {
 /// along the tube (pultruded, all fibres along it, 60 % of them; roll-wrapped with a half of the
 /// plies along it); the next maker's differs by more than 5 %, which is their standard uncertainty
 /// here. State your own.
+///
+/// ```
+/// use rodcal::design::built_in_materials;
+///
+/// let materials = built_in_materials();
+/// assert_eq!(materials["stainless"].density, 7900.0); // kg/m³, EN 10088-1
+/// ```
 pub fn built_in_materials() -> BTreeMap<String, Material> {
     let carbon = |name: &str, e: f64, g: f64| {
         let mut material = Material::anisotropic(name, e, g, 0.3, 1550.0);
@@ -59,6 +66,14 @@ pub fn built_in_materials() -> BTreeMap<String, Material> {
 
 /// The built-in catalogue: common round tubes of steel (EN 10305-1), stainless steel (ISO 1127),
 /// aluminium and carbon fibre.
+///
+/// ```
+/// use rodcal::design::{built_in, built_in_materials};
+///
+/// let tubes = built_in(&built_in_materials())?;
+/// assert!(tubes.len() > 20 && tubes.iter().any(|tube| tube.pipe.material.name == "steel"));
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// None: a test reads it.

@@ -11,6 +11,7 @@ use crate::units::{GRAM, MM, STANDARD_GRAVITY, UM};
 
 /// A number of a rod. Its value is in the unit of its key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Figure {
     /// Compliance index c_rod under the paper's contact force, µm ([`Compliance::index`]).
     CRod,
@@ -182,7 +183,7 @@ fn numbers<T: Number>(rod: &Rod<T>, solver: &mut TipSolver<T>) -> [T; 8] {
 /// A figure that is to be small, or large.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Goal {
-    /// Which.
+    /// The figure that counts.
     pub figure: Figure,
     /// True where more is better.
     pub is_maximised: bool,

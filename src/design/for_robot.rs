@@ -49,6 +49,29 @@ pub struct ForRobot {
 
 /// Forecasts of the shown designs of a front and of the rod to compare with.
 ///
+/// ```
+/// use rodcal::design::{Budget, DesignSpace, Searched, Study, Where, for_robot};
+/// use rodcal::prelude::*;
+///
+/// let space = DesignSpace::from_toml("design.toml", "
+///     [geometry]
+///     l1_mm = 150
+///     l2_mm = 525
+///     [catalogue]
+///     file = \"builtin\"
+///     [objectives]
+///     minimise = [\"c_rod_um\"]
+/// ", &|_| unreachable!())?;
+/// let study = Study::new(space, Searched::All, None, &|_| {})?;
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6))?;
+/// let found = for_robot(&study, &campaign, &budget, &Where::Validation, Some(20))?;
+/// assert_eq!(found.of_front, [1, 1]);
+/// let forecast = found.ranked[0].of(Mode::Fea).expect("the robot reaches the clamps with it");
+/// assert!((20e-6..100e-6).contains(&forecast.mean), "{}", forecast.mean);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// What the beam model refuses. A rod that the robot cannot be calibrated with is no error, unless
 /// it cannot with any of them: then why it cannot with the first.

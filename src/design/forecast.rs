@@ -42,6 +42,7 @@ const DRAWS: usize = 400;
 
 /// A part of the error budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Part {
     /// Sensors and repeatability while the robot is calibrated.
     Noise,
@@ -60,7 +61,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// All.
+    /// All parts, in the order of [`Forecast::parts`].
     pub const ALL: [Part; 7] = [
         Part::Noise,
         Part::Undetermined,
@@ -71,7 +72,7 @@ impl Part {
         Part::Instrument,
     ];
 
-    /// In JSON.
+    /// Its name in JSON, with the unit.
     pub fn key(self) -> &'static str {
         [
             "noise_um",

@@ -63,6 +63,29 @@ impl Intervals {
 
 /// For each design the other ones (by place) that differ from it in no goal by more than what is
 /// known of the difference.
+///
+/// ```
+/// use rodcal::design::{DesignSpace, Figures, Intervals, Searched, indistinguishable, search};
+/// use rodcal::rod::Rod;
+///
+/// let space = DesignSpace::from_toml("design.toml", "
+///     [geometry]
+///     l1_mm = 150
+///     l2_mm = [400, 525]
+///     [catalogue]
+///     file = \"builtin\"
+///     [objectives]
+///     minimise = [\"c_rod_um\"]
+///     maximise = [\"reach_mm\"]
+/// ", &|_| unreachable!())?;
+/// let front = search(&space, Searched::All, &|_| {})?.front;
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let known = Intervals::of(&rod, &Figures::slopes(&rod)?);
+/// // a tenth of a metre of reach is more than any tolerance of a length
+/// let same = indistinguishable(&front, &vec![known; front.len()], &space.goals);
+/// assert_eq!(same, [vec![], vec![]] as [Vec<usize>; 2]);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 pub fn indistinguishable(designs: &[Design], intervals: &[Intervals], goals: &[Goal]) -> Vec<Vec<usize>> {
     let is_same = |a: usize, b: usize| {
         goals.iter().all(|goal| {

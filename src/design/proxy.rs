@@ -27,6 +27,12 @@ pub struct Proxy {
 
 /// In each mode that all of these rods have: c_rod (m) and what is to be expected of each. None of
 /// fewer than five. Errors that the draws of the forecasts do not distinguish share a rank.
+///
+/// ```
+/// use rodcal::design::proxies;
+///
+/// assert!(proxies(&[(400e-6, &[]), (300e-6, &[])]).is_empty()); // two rods have no order to speak of
+/// ```
 pub fn proxies(rods: &[(f64, &[Forecast])]) -> Vec<Proxy> {
     let of_mode = |mode: Mode| {
         let one = |&(c_rod, modes): &(f64, &'_ [Forecast])| {

@@ -45,12 +45,12 @@ const SAME: f64 = 1e-4;
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Better {
-    /// The rod.
+    /// The rod between the values of the grid.
     pub rod: Rod,
     /// Names of its tubes, one where they are the same; none of tubes that the catalogue does not
     /// have.
     pub tubes: Vec<String>,
-    /// Its figures.
+    /// Figures of that rod, each in the unit of its key.
     pub figures: Figures,
     /// By which share its goal, or the weighted geometric mean of its goals, is better than that of
     /// the design it came from.
@@ -63,7 +63,7 @@ pub struct Better {
 pub struct Refined {
     /// Place of the design on the front, from 0.
     pub place: usize,
-    /// Its figures.
+    /// Figures of the design that the search started from, each in the unit of its key.
     pub from: Figures,
     /// What each goal weighed, 1 in all; those of no weight might not lose.
     pub weights: Vec<f64>,
@@ -79,6 +79,28 @@ pub struct Refined {
 }
 
 /// Refines the design at `place` of a front, bettering its goals by their [`weights`].
+///
+/// ```
+/// use rodcal::design::{DesignSpace, Searched, refine, search, weights};
+///
+/// let space = DesignSpace::from_toml("design.toml", "
+///     [geometry]
+///     l1_mm = { from = 150, to = 300, step = 50 }
+///     l2_mm = 400
+///     [catalogue]
+///     file = \"builtin\"
+///     [constraints]
+///     min_reach_mm = 440
+///     [objectives]
+///     minimise = [\"c_rod_um\"]
+/// ", &|_| unreachable!())?;
+/// let front = search(&space, Searched::All, &|_| {})?.front;
+/// let refined = refine(&space, &front, 0, &weights(&space, None)?)?.expect("there is a design 0");
+/// let better = refined.catalogue.expect("the shortest rod of that reach is between the steps");
+/// // √(440² − 400²) mm
+/// assert!((better.rod.l1 - 0.1833).abs() < 1e-3 && better.gained > 0.0, "{better:?}");
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// What the beam model refuses.

@@ -23,9 +23,9 @@ pub struct RodForecast {
     pub rod: String,
     /// c_rod of the beam model under the paper's contact force, m; 0 without a rod.
     pub c_rod: f64,
-    /// Number of poses, and whether they are those of the recording or were chosen by O1.
+    /// Number of poses that the forecast is of.
     pub poses: usize,
-    /// See `poses`.
+    /// True for the poses of the recording, false for poses that were chosen by O1.
     pub is_recorded: bool,
     /// In every mode that applies, in the paper's order.
     pub modes: Vec<Forecast>,

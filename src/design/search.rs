@@ -29,9 +29,10 @@ const STREAM: u64 = 15 << 32;
 /// Which rods are looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Searched {
-    /// All combinations.
+    /// Every combination of the design space.
     All,
-    /// So many of them, one at random of each of as many equal parts, from a seed.
+    /// So many of them (first number), one at random of each of as many equal parts of the space;
+    /// random numbers from a seed (second number).
     Samples(u64, u64),
 }
 
@@ -65,6 +66,25 @@ pub(super) struct Sum {
 
 /// Looks at the rods of `space` and keeps those that nobody betters. `progress` is called with how
 /// many more were looked at. The result does not depend on the number of threads.
+///
+/// ```
+/// use rodcal::design::{DesignSpace, Figure, Searched, search};
+///
+/// let space = DesignSpace::from_toml("design.toml", "
+///     [geometry]
+///     l1_mm = 150
+///     l2_mm = [400, 525]
+///     [catalogue]
+///     file = \"builtin\"
+///     [objectives]
+///     maximise = [\"reach_mm\"]
+/// ", &|_| unreachable!())?;
+/// let found = search(&space, Searched::All, &|_| {})?;
+/// assert_eq!(found.evaluated, 2 * space.tubes.len() as u64);
+/// let reach = found.front[0].figures.get(Figure::Reach).unwrap_or(0.0); // mm, as its key says
+/// assert!((reach - 150f64.hypot(525.0)).abs() < 1e-9, "{reach}");
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`Search::new`] and [`Search::go_on`].

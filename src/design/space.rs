@@ -25,15 +25,15 @@ pub struct DesignSpace {
     pub(super) content: String,
     /// Where the key with the most values stands.
     pub(super) longest: Place,
-    /// L1, L2 and bend radius, m; γ, rad; mass at the tip, kg.
+    /// Values of L1, m.
     pub l1: Vec<f64>,
-    #[allow(missing_docs)]
+    /// Values of L2, m.
     pub l2: Vec<f64>,
-    #[allow(missing_docs)]
+    /// Values of γ, rad.
     pub gamma: Vec<f64>,
-    #[allow(missing_docs)]
+    /// Values of the bend radius, m.
     pub bend_radius: Vec<f64>,
-    #[allow(missing_docs)]
+    /// Values of the mass at the tip, kg.
     pub tip_mass: Vec<f64>,
     /// Ends of L1, L2, γ, bend radius and tip mass, SI, where they were given as ranges, between
     /// which other values make sense too; the steps of the grid may end before.
@@ -44,11 +44,11 @@ pub struct DesignSpace {
     pub tubes: Vec<Tube>,
     /// Both pipes from one tube.
     pub is_one_tube: bool,
-    /// What sits on every rod.
+    /// Masses on every rod.
     pub masses: Vec<LumpedMass>,
-    #[allow(missing_docs)]
+    /// Joints of every rod.
     pub joints: Vec<Joint>,
-    #[allow(missing_docs)]
+    /// Sleeves on every rod.
     pub sleeves: Vec<Sleeve>,
     /// What a rod may have or not: each selection of them is a combination.
     pub optional_sleeves: Vec<Sleeve>,

@@ -41,7 +41,7 @@ pub struct Study {
 pub struct KnownDesign {
     /// Its place on the front, from 0.
     pub place: usize,
-    /// How well.
+    /// Half widths of the 95 % intervals of its figures, and where they come from.
     pub intervals: Intervals,
     /// Places on the front of designs that cannot be distinguished from it.
     pub indistinguishable: Vec<usize>,

@@ -113,7 +113,7 @@ impl fmt::Display for Limitation {
             ),
             Limitation::UnknownArrival(pose, off) => write!(
                 f,
-                "{} is {} µm off, which what was found may have done: from where the arm came to it nobody knows.",
+                "{} is {} µm off. What was found may be the cause: where the arm came from before it was not recorded.",
                 pose.replacen("pose", "Pose", 1),
                 significant(off / UM, 3)
             ),

@@ -34,6 +34,39 @@ const WORTH_SAYING: f64 = 3.0;
 ///
 /// A stated noise that the best hypothesis contradicts tells no shape from chance: what is left is
 /// searched again with the scatter that it has, and said to be more than was stated.
+///
+/// ```
+/// use nalgebra::DVector;
+/// use rodcal::diagnosis::rig::planned::effect_named;
+/// use rodcal::inference::{Candidate, Evidence, ForwardModel, Location, Parameter, Term, diagnose, ranking};
+/// use rodcal::units::Unit;
+///
+/// /// A slope over 40 data, and nothing else that might be real.
+/// struct Slope(Vec<Candidate>);
+///
+/// impl ForwardModel for Slope {
+///     fn candidates(&self) -> &[Candidate] {
+///         &self.0
+///     }
+///
+///     fn response(&self, terms: &[Term]) -> DVector<f64> {
+///         let slope: f64 = terms.iter().map(|term| term.values[0]).sum();
+///         DVector::from_fn(40, |row, _| slope * row as f64 / 39.0)
+///     }
+/// }
+///
+/// let effect = effect_named("stiffness_scale").expect("the library knows it");
+/// let parameters = vec![Parameter::new("slope", Unit::NONE, 10.0)];
+/// let model = Slope(vec![Candidate::new(effect, Location::Named("here".into()), parameters)]);
+/// // a slope of 8 beside errors of 0.5 that change their sign from datum to datum
+/// let recorded = |row: usize| 8.0 * row as f64 / 39.0 + if row % 2 == 0 { 0.5 } else { -0.5 };
+/// let mut evidence = Evidence::new(DVector::from_fn(40, |row, _| recorded(row)));
+/// evidence.fold = (0..40).map(|row| row % 5).collect();
+/// let found = diagnose(&model, &evidence);
+/// let slope = found.findings[0].quantity("slope").expect("its parameter");
+/// assert!((slope.value - 8.0).abs() < 0.3 && slope.low < 8.0 && 8.0 < slope.high, "{slope:?}");
+/// assert_eq!(ranking(model.candidates(), &found)[0].effect.name, "stiffness_scale");
+/// ```
 pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let diagnosis = diagnose_with(model, evidence);
     let Some(stated) = evidence.stated_noise.filter(|_| diagnosis.noise_test.is_contradicted()) else {

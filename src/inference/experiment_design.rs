@@ -48,6 +48,12 @@ impl<M> ExperimentDesign<M> {
 }
 
 /// True for a separation that counts.
+///
+/// ```
+/// use rodcal::inference::separates;
+///
+/// assert!(separates(10.0) && !separates(0.1));
+/// ```
 pub fn separates(separation: f64) -> bool {
     separation > TOLD
 }

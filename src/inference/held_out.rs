@@ -33,10 +33,10 @@ pub struct HeldOut {
     pub before: f64,
     /// And of what the hypothesis found without them leaves.
     pub after: f64,
-    /// 1 − after²/before², with its 95 % interval by drawing folds again; `None` with fewer than
-    /// three folds.
+    /// Share of the squares that vanishes, 1 − after²/before².
     pub gain: f64,
-    /// See `gain`.
+    /// 95 % interval of `gain`, from folds that are drawn again; `None` with fewer than three
+    /// folds.
     pub gain_interval: Option<(f64, f64)>,
     /// Hypotheses of the folds.
     pub hypotheses: Vec<Vec<Term>>,
@@ -112,13 +112,13 @@ pub(super) struct Trained {
     pub before: DVector<f64>,
     /// And what the hypothesis that they support by themselves leaves, forms of its laws averaged.
     pub after: DVector<f64>,
-    /// Its terms.
+    /// Terms of that hypothesis.
     pub terms: Vec<Term>,
     /// What a given hypothesis leaves, fitted to them, and what it leaves without each of its
     /// themes, each two that are physics, and all of these: two that undo each other are worth much
     /// to each other and nothing together.
     pub with: DVector<f64>,
-    /// See `with`.
+    /// Themes that were left out of the given hypothesis, and what it leaves then (one per datum).
     pub without: Vec<(Vec<Theme>, DVector<f64>)>,
 }
 

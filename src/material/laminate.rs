@@ -19,6 +19,7 @@ use crate::dual::{Dual, Number};
 
 /// One unidirectional ply; moduli in its own axes (1 along the fibre, 2 across it).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Ply<T = f64> {
     /// Modulus along the fibre E₁, Pa.
     pub e1: T,
@@ -32,6 +33,18 @@ pub struct Ply<T = f64> {
     pub thickness: T,
     /// Angle between the fibre and the pipe's axis, rad.
     pub angle: T,
+}
+
+impl Ply {
+    /// A ply along the pipe's axis with moduli `[E₁, E₂, G₁₂]` (Pa), ν₁₂ and a thickness (m).
+    pub fn new([e1, e2, g12]: [f64; 3], nu12: f64, thickness: f64) -> Ply {
+        Ply { e1, e2, g12, nu12, thickness, angle: 0.0 }
+    }
+
+    /// With its fibre at this angle to the pipe's axis, rad.
+    pub fn at_angle(self, angle: f64) -> Ply {
+        Ply { angle, ..self }
+    }
 }
 
 /// A number of the plies of a laminate.
@@ -117,9 +130,8 @@ impl<T: Number> Ply<T> {
 /// use rodcal::material::laminate::{Ply, wall};
 ///
 /// // T300/5208 (Tsai and Hahn 1980, Table 1.7), quasi-isotropic: E = 69.7 GPa, ν = 0.30 (Table 4.4)
-/// let ply = |degrees: f64| Ply {
-///     e1: 181e9, e2: 10.3e9, g12: 7.17e9, nu12: 0.28, thickness: 0.125e-3, angle: degrees.to_radians(),
-/// };
+/// let along = Ply::new([181e9, 10.3e9, 7.17e9], 0.28, 0.125e-3);
+/// let ply = |degrees: f64| along.at_angle(degrees.to_radians());
 /// let wall = wall(&[0.0, 45.0, -45.0, 90.0].map(ply)).expect("plies of positive stiffness");
 /// assert!((wall.youngs_modulus - 69.7e9).abs() < 0.1e9 && (wall.poisson_ratio - 0.30).abs() < 0.005);
 /// // isotropic in its plane: G = E / 2(1+ν), and nothing couples extension with shear

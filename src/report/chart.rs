@@ -39,6 +39,7 @@ impl Chart {
 
 /// Several charts in one picture, or just one (`Figure::from(chart)`).
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Figure {
     /// Short name for files, for example "load-deflection".
     pub name: String,
@@ -56,6 +57,17 @@ pub struct Figure {
 }
 
 impl Figure {
+    /// Several charts in rows of so many, each with its own legend.
+    pub fn new(panels: Vec<Chart>, columns: usize) -> Self {
+        Figure { panels, columns, ..Figure::default() }
+    }
+
+    /// The same figure with one legend below all panels.
+    pub fn with_shared_legend(mut self) -> Self {
+        self.shared_legend = true;
+        self
+    }
+
     /// The same figure under a file name.
     pub fn named(mut self, name: impl Into<String>) -> Self {
         self.name = name.into();
@@ -121,6 +133,7 @@ pub enum Range {
 /// Something drawn on a chart. A mark with an empty label is left out of the legend;
 /// marks that share a label share its entry.
 #[derive(Debug, Clone, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum Mark {
     /// Points joined by straight lines.
     Line {
@@ -351,7 +364,7 @@ impl Style {
 /// The colours of Okabe and Ito (2008), which colour-blind readers can tell apart, without their
 /// yellow (too pale on white), and a grey for what is only there to compare with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "their names say how they look")]
 pub enum Colour {
     Black,
     Vermilion,
@@ -365,7 +378,7 @@ pub enum Colour {
 
 /// Dash pattern of a line; hatching of a bar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "their names say how they look")]
 pub enum Dash {
     Solid,
     Dashed,
@@ -377,7 +390,7 @@ pub enum Dash {
 
 /// Shape of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "their names say how they look")]
 pub enum Marker {
     Circle,
     Square,

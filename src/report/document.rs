@@ -7,6 +7,7 @@ use super::table::Table;
 
 /// A report as plain data.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Report {
     /// Name of its page among others of one directory, `rod` for `rod.html`; nothing for
     /// `index.html`.
@@ -83,6 +84,7 @@ impl Card {
 
 /// A part of a report under its own heading.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Section {
     /// Heading.
     pub heading: String,
@@ -92,6 +94,7 @@ pub struct Section {
 
 /// A piece of a section.
 #[derive(Debug, Clone, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum Block {
     /// Plain words.
     Paragraph(String),
@@ -111,6 +114,11 @@ impl Section {
 }
 
 impl Report {
+    /// A report with a title and its result in one sentence, and nothing else yet.
+    pub fn new(title: impl Into<String>, headline: impl Into<String>) -> Self {
+        Report { title: title.into(), headline: headline.into(), ..Report::default() }
+    }
+
     /// All figures in the order of the page.
     pub fn figures(&self) -> impl Iterator<Item = &Figure> {
         self.blocks().filter_map(|block| match block {

@@ -12,6 +12,14 @@ use super::unbroken::unbroken;
 
 /// The whole page: style sheet, pictures and what little script there is are inside it, and it may
 /// fetch nothing.
+///
+/// ```
+/// use rodcal::report::{Report, html};
+///
+/// let report = Report::new("Stiffness of rod 5#", "It is 1.5 % softer.");
+/// let page = html::page(&report);
+/// assert!(page.starts_with("<!DOCTYPE html>") && page.contains("<h1>Stiffness of rod 5#</h1>"));
+/// ```
 pub fn page(report: &Report) -> String {
     let (mut figures, mut tables) = (0, 0);
     let sections: Vec<Markup> = report
@@ -60,6 +68,13 @@ pub fn page(report: &Report) -> String {
 
 /// The same without a page around it, for a notebook: overview, words, pictures and tables, with
 /// their own style and nothing outside. It holds no ids and no links, for there may be many.
+///
+/// ```
+/// use rodcal::report::{Report, html};
+///
+/// let report = Report::new("Stiffness of rod 5#", "Rod 5# is 1.5 % softer.");
+/// assert!(html::fragment(&report).starts_with("<div class=\"rodcal\">"));
+/// ```
 pub fn fragment(report: &Report) -> String {
     let (mut figures, mut tables) = (0, 0);
     let part = |section: &Section| section_markup(Beside::Nothing, section, None, &mut figures, &mut tables);

@@ -82,7 +82,7 @@ pub(super) const ROD_DESIGN: Method = &[
 ];
 
 pub(super) const POSE_DESIGN: Method = &[
-    "Poses are exchanged one by one between plan and candidates as long as that betters the criterion, each pose once, \
+    "Poses are exchanged one by one between plan and candidates as long as that improves the criterion, each pose once, \
      with rank-one updates of the information matrix of all parameters: docs/design.md, From a rod to poses. O1 to O5 are \
      the observability indices of Sun and Hollerbach (ICRA 2008).",
 ];

@@ -238,7 +238,7 @@ fn places(study: &PoseStudy) -> Table {
     heads.extend(met.iter().map(|obstacle| Column::number(obstacle.short(), "")));
     let limits = &study.wanted.limits;
     let caption = format!(
-        "Chosen poses and candidates by place, then postures that were refused, by what they break first: out of reach, joint \
+        "Chosen poses and candidates by place, then configurations that were refused, by what they break first: out of reach, joint \
          limits, the cone of {}° about the clamp's axis, the block of {} mm about a clamp, the table. {} more had no joint that \
          differs by {}° from another one.",
         significant(limits.cone / DEG, 3),
@@ -274,7 +274,7 @@ fn worth(study: &PoseStudy) -> Vec<Block> {
         _ => "",
     };
     let source = match &study.wanted.source {
-        Source::Generated(_) => format!("{} random postures", study.candidates.tried),
+        Source::Generated(_) => format!("{} random configurations", study.candidates.tried),
         Source::File(file, _) => format!("{} poses of {file}", study.candidates.tried),
     };
     let [o1, o2, o3, o4, o5] = study.observability.indices;
@@ -310,7 +310,7 @@ fn worth(study: &PoseStudy) -> Vec<Block> {
     for known in known.into_iter().take(PARAMETERS) {
         let unit = known.parameter.unit();
         table.row([
-            known.parameter.words(),
+            known.parameter.description(),
             unit.symbol.to_owned(),
             significant(known.before / unit.si, 2),
             significant(known.after / unit.si, 2),

@@ -4,14 +4,14 @@ mod compared;
 mod difference;
 mod json;
 mod picture;
+mod report;
 mod run;
 mod tables;
 #[cfg(test)]
 mod tests;
-mod words;
 
 pub use self::compared::Runs;
 pub use self::difference::{Change, Difference, Input, LEVEL, State};
 pub use self::json::json;
+pub use self::report::report;
 pub use self::run::{Quantity, Run, name_and_unit};
-pub use self::words::report;

@@ -9,6 +9,13 @@ const WIDTH: usize = 100;
 
 /// The headline, then every section with its words and tables, which take what they need. Warnings
 /// are left to stderr.
+///
+/// ```
+/// use rodcal::report::{Report, text};
+///
+/// let report = Report::new("Stiffness of rod 5#", "Rod 5# is 1.5 % softer.");
+/// assert_eq!(text::text(&report), "Rod 5# is 1.5 % softer.\n");
+/// ```
 pub fn text(report: &Report) -> String {
     text_within(report, usize::MAX)
 }

@@ -15,6 +15,7 @@ use crate::rod::{Rod, RodLaw};
 
 /// How to fit.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Options {
     /// Physics of the model the readings are compared with.
     pub physics: Physics,
@@ -27,6 +28,23 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Options { physics: Physics::default(), elements: DEFAULT_ELEMENTS, robust: Robust::None }
+    }
+}
+
+impl Options {
+    /// With this physics of the model.
+    pub fn with_physics(self, physics: Physics) -> Options {
+        Options { physics, ..self }
+    }
+
+    /// With a model of so many elements.
+    pub fn with_elements(self, elements: usize) -> Options {
+        Options { elements, ..self }
+    }
+
+    /// With these weights against outliers.
+    pub fn with_robust(self, robust: Robust) -> Options {
+        Options { robust, ..self }
     }
 }
 

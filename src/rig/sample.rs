@@ -40,9 +40,9 @@ pub struct Point {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct LackOfFit {
-    /// s_f² / s_e².
+    /// F = s_f²/s_e²: variance of the averages about the curve over that of repeats about them.
     pub f: f64,
-    /// K − p.
+    /// Degrees of freedom of the averages, K − p: K loads, p coefficients of the curve.
     pub dof_fit: usize,
     /// N − K, less what trials take up where they differ.
     pub dof_repeats: usize,

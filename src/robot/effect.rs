@@ -24,39 +24,39 @@
 pub enum Effect {
     /// A wave of so many cycles per revolution.
     Harmonic {
-        /// The joint.
+        /// Number of the joint, from 0.
         joint: usize,
-        /// n.
+        /// Cycles per revolution of the joint, n.
         cycles_per_rev: f64,
-        /// a, rad.
+        /// Amplitude a of the sine, rad.
         sine: f64,
-        /// b, rad.
+        /// Amplitude b of the cosine, rad.
         cosine: f64,
     },
     /// A table: angles (rad, ascending) with what is added to them (rad).
     Table {
-        /// The joint.
+        /// Number of the joint, from 0.
         joint: usize,
         /// Angle and correction.
         rows: Vec<(f64, f64)>,
     },
     /// A joint that turns s times as far as it reads.
     EncoderScale {
-        /// The joint.
+        /// Number of the joint, from 0.
         joint: usize,
-        /// s.
+        /// Ratio s of the angle turned to the angle read; 1 is no error.
         factor: f64,
     },
     /// Play, taken up by gravity's torque.
     Backlash {
-        /// The joint.
+        /// Number of the joint, from 0.
         joint: usize,
         /// b, rad.
         play: f64,
     },
     /// Play that friction holds open: the joint stays at the side that it was driven to.
     PlayByApproach {
-        /// The joint.
+        /// Number of the joint, from 0.
         joint: usize,
         /// The whole gap, rad.
         play: f64,
@@ -64,7 +64,7 @@ pub enum Effect {
     /// Friction that grows with the joint's load and keeps its drive wound up to the side that it
     /// was driven to.
     Friction {
-        /// The joint.
+        /// Number of the joint, from 0.
         joint: usize,
         /// Angle between the two directions of approach per torque, rad/(N·m).
         per_nm: f64,
@@ -78,14 +78,14 @@ pub enum Effect {
     },
     /// A joint that deflects under its torque, in files that have no place for that at the joint.
     Compliance {
-        /// The joint.
+        /// Number of the joint, from 0.
         joint: usize,
         /// c, rad/(N·m).
         per_nm: f64,
     },
     /// A joint whose deflection is out of proportion to its torque.
     NonlinearStiffness {
-        /// The joint.
+        /// Number of the joint, from 0.
         joint: usize,
         /// Which power of the torque.
         power: TorquePower,
@@ -106,7 +106,7 @@ pub enum Effect {
     },
     /// A joint that deflects under an unknown weight at a frame beyond it.
     Weight {
-        /// The joint.
+        /// Number of the joint, from 0.
         joint: usize,
         /// The joint on whose axis the weight sits; `None` for the flange.
         at: Option<usize>,

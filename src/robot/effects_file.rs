@@ -231,6 +231,17 @@ pub(super) fn written(effect: &Effect) -> String {
 
 /// Corrections of joints over their own angles as a table (CSV): joint, angle_deg, correction_urad.
 /// `angles` (rad) by joint.
+///
+/// ```
+/// use rodcal::robot::{Effect, Robot, corrections_csv};
+///
+/// let (file, text) = Robot::builtin("tx90").expect("the program carries it");
+/// let mut robot = Robot::from_text(file, text, None, None)?;
+/// robot.effects.push(Effect::EncoderScale { joint: 1, factor: 1.001 });
+/// let table = corrections_csv(&robot, &[vec![], vec![0.0, 1.0]]);
+/// assert_eq!(table.lines().last(), Some("2,57.2958,1000.0000")); // 0.1 % of a radian
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 pub fn corrections_csv(robot: &Robot, angles: &[Vec<f64>]) -> String {
     let mut text =
         "# add correction_urad to the angle that the joint shows; straight between the rows\n".to_owned();
@@ -252,6 +263,17 @@ pub fn corrections_csv(robot: &Robot, angles: &[Vec<f64>]) -> String {
 }
 
 /// The effects of a table of corrections for a robot with so many joints.
+///
+/// ```
+/// use rodcal::robot::{Effect, corrections_from_csv};
+///
+/// let table = "joint,angle_deg,correction_urad\n2,-90,0\n2,90,180\n";
+/// let effects = corrections_from_csv("corrections.csv", table, 6)?;
+/// let Effect::Table { joint, rows } = &effects[0] else { unreachable!() };
+/// assert_eq!((*joint, rows.len()), (1, 2));
+/// assert!((rows[1].1 - 180e-6).abs() < 1e-12); // rad
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`crate::Error::Input`] with line and column.

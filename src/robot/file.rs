@@ -85,6 +85,12 @@ impl Robot {
 }
 
 /// True of XML, which no TOML begins like.
+///
+/// ```
+/// use rodcal::robot::is_urdf;
+///
+/// assert!(is_urdf("<?xml version=\"1.0\"?><robot/>") && !is_urdf("name = \"TX90\""));
+/// ```
 pub fn is_urdf(text: &str) -> bool {
     text.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}').starts_with('<')
 }

@@ -84,7 +84,7 @@ pub enum ParameterGroup {
 
 impl Parameter {
     /// For people: `base x`, `theta2`, `tool z`.
-    pub fn words(&self) -> String {
+    pub fn description(&self) -> String {
         self.to_string().replace('_', " ")
     }
 

@@ -98,6 +98,13 @@ impl Kinematics<'_> {
 }
 
 /// A moment without its part about an axis.
+///
+/// ```
+/// use rodcal::robot::across;
+///
+/// let moment = across(&[1.0, 2.0, 3.0].into(), &[0.0, 0.0, 1.0].into()); // N·m
+/// assert_eq!(moment.as_slice(), [1.0, 2.0, 0.0]);
+/// ```
 pub fn across(moment: &Vector3<f64>, axis: &Vector3<f64>) -> Vector3<f64> {
     moment - axis * axis.dot(moment)
 }

@@ -107,7 +107,7 @@ fn a_link_that_twists_is_written_and_read() {
     assert_settled(&FOUND_TWISTED, LawPlace::Link(2), Some(0), JointLawVariable::Angle(4));
 }
 
-/// A hose that turns joint 4 from one posture of two others on.
+/// A hose that turns joint 4 from one configuration of two others on.
 #[test]
 fn a_hose_that_gets_taut_is_written_and_read() {
     let taut = |built: &Robot, q: &[f64], _: usize| {
@@ -173,6 +173,7 @@ fn section(found: &CalibrationDiagnosis) -> String {
         Block::Paragraph(words) => words.clone(),
         Block::Table(table) => table.rows.iter().map(|row| row.join(" | ")).collect::<Vec<_>>().join("\n"),
         Block::Figure(figure) => figure.caption.clone(),
+        other => unreachable!("{other:?}"),
     };
     section.blocks.iter().map(words).collect::<Vec<_>>().join("\n\n")
 }

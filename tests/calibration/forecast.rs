@@ -15,7 +15,7 @@ fn forecast(campaign: &Campaign, plan: &Plan, mode: Mode) -> Forecast {
     let budget = Budget::of(campaign, Some(noise), Some(plan.repeatability)).unwrap();
     // clamps are known to so much in each direction
     let clamps = plan.clamp_error / 3f64.sqrt();
-    let budget = Budget { instrument: plan.scanner_noise, clamps, ..budget };
+    let budget = budget.with_instrument(plan.scanner_noise).with_clamps(clamps);
     let recording = &campaign.measurements;
     let poses: Vec<_> =
         (0..recording.len()).map(|row| (recording.rows[row].group, recording.joints(row).to_vec())).collect();

@@ -101,6 +101,7 @@ impl Lab {
             match joint.motion {
                 Motion::Revolute => theta += q,
                 Motion::Prismatic => d += q,
+                other => unreachable!("{other:?}"),
             }
             frame = frame
                 * turn(Vector3::z() * theta)
@@ -150,6 +151,7 @@ impl Lab {
         let entry = |j: usize| match self.robot.joints[j].motion {
             Motion::Revolute => (at(j, FRAC_PI_2) - at(j, -FRAC_PI_2)) / 2.0,
             Motion::Prismatic => at(j, 0.5) - at(j, -0.5),
+            other => unreachable!("{other:?}"),
         };
         (0..q.len()).map(entry).collect()
     }
@@ -253,6 +255,7 @@ impl Lab {
             .map(|(joint, q)| match joint.motion {
                 Motion::Revolute => format!(",{:?}", q.to_degrees()),
                 Motion::Prismatic => format!(",{:?}", q * 1e3),
+                other => unreachable!("{other:?}"),
             })
             .collect()
     }

@@ -154,7 +154,8 @@ fn struck(line: &str, counts: &[usize]) {
                 };
                 assert!(is_either(&old) || is_either(&new), "{line}, {fault}: {:?}", there.keys());
             }
-            // fewer operations than that, or what is swept in the end: it may stay until the next time
+            // fewer operations than that, or what is swept in the end: it may stay until the next
+            // time
             (_, Some(0 | 1)) => assert!(lasting(after) == new, "{line}, {fault}"),
             _ => panic!("{line}, {fault}: {status:?} {stderr}"),
         }

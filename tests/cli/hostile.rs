@@ -18,8 +18,8 @@ fn assert_shown(answer: &Answer) {
     }
 }
 
-/// What a spreadsheet would calculate begins with `=`, `+`, `-` or `@` and is no number, no interval
-/// and no direction.
+/// What a spreadsheet would calculate begins with `=`, `+`, `-` or `@` and is no number, no
+/// interval and no direction.
 fn assert_no_formula(name: &str, text: &str) {
     let mut rows = csv::ReaderBuilder::new()
         .has_headers(false)

@@ -62,7 +62,7 @@ fn compliance_in_every_mode_and_theory() {
                 let is_calc = *mode == "calc";
                 assert_eq!(json["theory"], if is_calc { "euler-bernoulli" } else { theory });
 
-                let physics = Physics { shear: theory == "timoshenko", ..Physics::default() };
+                let physics = Physics::default().with_shear(theory == "timoshenko");
                 let expected = match is_calc {
                     true => closed_form::compliance(&rod).unwrap(),
                     false => Compliance::of_model(&rod, &physics, 200).unwrap(),

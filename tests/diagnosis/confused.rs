@@ -96,8 +96,8 @@ fn a_rod_twelve_times_softer_is_no_root_alone() {
     assert!(answer.class(0).contains(&"root_compliance"), "{:?}", answer.class(0));
 }
 
-/// A modulus of 2 GPa for 193: one percent of what that rod would bend is all that was read, so that
-/// the numbers of the file and a slide that holds each load would explain everything.
+/// A modulus of 2 GPa for 193: one percent of what that rod would bend is all that was read, so
+/// that the numbers of the file and a slide that holds each load would explain everything.
 #[test]
 fn a_rod_a_hundred_times_stiffer_is_no_slide_that_holds_every_load() {
     let rod = std::fs::read_to_string("rods/5.toml").unwrap();
@@ -113,7 +113,8 @@ fn a_rod_a_hundred_times_stiffer_is_no_slide_that_holds_every_load() {
     assert!(low < factor && factor < high && (90.0..100.0).contains(&factor), "{low} {factor} {high}");
     let [low, force, high] = interval(answer.finding("friction"), "force_n");
     assert!((0.6..1.2).contains(&force) && high - low < 0.5, "{low} {force} {high}");
-    // radii for diameters would leave a rod that is 14 % stiffer: one that is 77 times stiffer is no worse
+    // radii for diameters would leave a rod that is 14 % stiffer: one that is 77 times stiffer is
+    // no worse
     let answer = with("2.5");
     assert_eq!(answer.effects()[0], "unit_mistake", "{}", answer.json["headline"]);
     assert!(answer.class(0).contains(&"stiffness_scale"), "{:?}", answer.class(0));

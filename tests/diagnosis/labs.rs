@@ -1,6 +1,6 @@
 //! Recordings as labs make them: loads that go up and down, displacements that are imposed,
-//! sessions, times of hanging. SimulatedCase here by closed-form mechanics of a straight tube that share
-//! nothing with the program's; moduli are off as any rod's are.
+//! sessions, times of hanging. They are made here by closed-form mechanics of a straight tube that
+//! share nothing with the program's; moduli are off as any rod's are.
 
 use rodcal::rig::readings::Readings;
 use rodcal::statistics::Random;

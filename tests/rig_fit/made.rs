@@ -11,16 +11,7 @@ use rodcal::rod::Rod;
 use rodcal::units::UM;
 
 /// What the closed form of [`Tube`] contains.
-pub const EULER_BERNOULLI: Physics = Physics {
-    axial: false,
-    shear: false,
-    bend: true,
-    bend_flexibility: true,
-    joints: true,
-    sleeves: true,
-    masses: true,
-    tip_mass: true,
-};
+pub const EULER_BERNOULLI: Physics = Physics::WHOLE.with_axial(false).with_shear(false);
 
 /// Two pipes of one tube, sharp corner, γ = 90°.
 #[derive(Clone, Copy)]
@@ -194,7 +185,11 @@ pub fn fit(text: &str) -> Fit {
 
 /// The fit of a rod by the closed form's physics.
 pub fn with_rod(text: &str, rod: &Rod, robust: Robust) -> Fit {
-    fit_with(text, Some(rod), &Options { physics: EULER_BERNOULLI, elements: 4, robust })
+    fit_with(
+        text,
+        Some(rod),
+        &Options::default().with_physics(EULER_BERNOULLI).with_elements(4).with_robust(robust),
+    )
 }
 
 pub fn try_with_rod(text: &str, rod: &Rod) -> Result<Fit> {

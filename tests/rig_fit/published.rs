@@ -174,7 +174,7 @@ fn the_simulated_ratio_is_the_published_one() {
 fn robust_fits_of_clean_readings_agree_with_least_squares() {
     let file = project().join("stiffness_data/5.csv");
     for robust in [super::HUBER, super::TUKEY] {
-        let options = Options { robust, ..Options::default() };
+        let options = Options::default().with_robust(robust);
         let robust = rig::fit(&Readings::read(&file).unwrap(), Some(&rod(5)), &options).unwrap();
         let (plain, robust) = (of_rod(5).measured.unwrap().rod_ratio, robust.measured.unwrap().rod_ratio);
         assert!((plain.value - robust.value).abs() < plain.std_error.unwrap(), "{plain:?} {robust:?}");

@@ -250,7 +250,7 @@ fn a_joint_turns_everything_beyond_it() {
     let rod = reference_rod("");
     let with_joint = |station: f64, bending: f64, torsion: f64| {
         let mut rod = rod.clone();
-        rod.joints.push(rodcal::rod::Joint { name: "j".into(), station, bending, torsion });
+        rod.joints.push(rodcal::rod::Joint::new("j", station, bending, torsion));
         Compliance::of_model(&rod, &Physics::default(), 10).unwrap().force
     };
     let plain = Compliance::of_model(&rod, &Physics::default(), 10).unwrap().force;
@@ -267,9 +267,9 @@ fn a_joint_turns_everything_beyond_it() {
     assert_relative_eq!(corner[(1, 1)], 4e-4 * 0.45f64.powi(2), max_relative = 1e-9);
 }
 
-/// J. M. Gere, *Mechanics of Materials*, 6th ed., § 9.7, example 9-14: a cantilever of length L with
-/// 2I over the half at its root and I over the other sinks by 3PL³/16EI at its end. Here the second
-/// I is that of a sleeve.
+/// J. M. Gere, *Mechanics of Materials*, 6th ed., § 9.7, example 9-14: a cantilever of length L
+/// with 2I over the half at its root and I over the other sinks by 3PL³/16EI at its end. Here the
+/// second I is that of a sleeve.
 #[test]
 fn a_cantilever_that_is_twice_as_stiff_in_its_half_at_the_root() {
     let rod = reference_rod("gamma_deg = 180.0");
@@ -283,7 +283,7 @@ fn a_cantilever_that_is_twice_as_stiff_in_its_half_at_the_root() {
     };
     let sleeve = rodcal::rod::Pipe::new(sleeve, rod.pipe1.material.clone());
     let rod = rod.with_sleeve("over the half", 0.0, length / 2.0, sleeve);
-    let physics = Physics { sleeves: true, ..Physics::BENDING_AND_TORSION };
+    let physics = Physics::BENDING_AND_TORSION.with_sleeves(true);
     let ei = 193e9 * rod.pipe1.section.second_moment();
     let found = Compliance::of_model(&rod, &physics, 7).unwrap().force;
     let expected = 3.0 * length.powi(3) / (16.0 * ei);
@@ -295,7 +295,7 @@ fn a_cantilever_that_is_twice_as_stiff_in_its_half_at_the_root() {
 #[test]
 fn a_station_between_flange_and_tip_can_be_loaded_and_read() {
     let rod = reference_rod("gamma_deg = 180.0");
-    let model = RodModel::new(&rod, &Physics { shear: false, ..Physics::default() }, 7, &[0.2, 0.5]).unwrap();
+    let model = RodModel::new(&rod, &Physics::default().with_shear(false), 7, &[0.2, 0.5]).unwrap();
     let ei = 193e9 * rod.pipe1.section.second_moment();
     // Roark's Formulas, 7th ed., Table 8.1, case 1a: force at a = 0.5 m read at x = 0.2 m: δ =
     // x²(3a − x)/6EI

@@ -138,7 +138,7 @@ fn a_section_by_its_constants_is_the_same_section() {
 /// T300/5208 graphite–epoxy: S. W. Tsai, H. T. Hahn, *Introduction to Composite Materials* (1980),
 /// Table 1.7.
 fn t300(angle_deg: f64) -> Ply {
-    Ply { e1: 181e9, e2: 10.3e9, g12: 7.17e9, nu12: 0.28, thickness: 0.125e-3, angle: angle_deg.to_radians() }
+    Ply::new([181e9, 10.3e9, 7.17e9], 0.28, 0.125e-3).at_angle(angle_deg.to_radians())
 }
 
 /// A. K. Kaw, *Mechanics of Composite Materials*, 2nd ed. (2006), Example 2.6: Q̄ of a 60° ply,

@@ -38,29 +38,29 @@ pub trait Number:
     }
     /// |x|; at its kink, where x is 0, the derivative is the one as the variable grows.
     fn size(self) -> Self;
-    /// 1/x.
+    /// Reciprocal 1/x.
     fn recip(self) -> Self {
         Self::one() / self
     }
-    #[allow(missing_docs)]
+    /// Square root √x.
     fn sqrt(self) -> Self;
-    #[allow(missing_docs)]
+    /// Exponential e^x.
     fn exp(self) -> Self;
-    #[allow(missing_docs)]
+    /// Natural logarithm ln x.
     fn ln(self) -> Self;
-    #[allow(missing_docs)]
+    /// Sine of an angle in rad.
     fn sin(self) -> Self;
-    #[allow(missing_docs)]
+    /// Cosine of an angle in rad.
     fn cos(self) -> Self;
-    #[allow(missing_docs)]
+    /// Tangent of an angle in rad.
     fn tan(self) -> Self;
-    #[allow(missing_docs)]
+    /// Hyperbolic tangent.
     fn tanh(self) -> Self;
-    #[allow(missing_docs)]
+    /// Arctangent, rad.
     fn atan(self) -> Self;
-    #[allow(missing_docs)]
+    /// Whole power x^n.
     fn powi(self, n: i32) -> Self;
-    #[allow(missing_docs)]
+    /// Power x^p of a positive number.
     fn powf(self, p: f64) -> Self;
 }
 

@@ -117,7 +117,7 @@ pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>) -> Result<DVector<f64>>
     Ok(DVector::from_fn(n, |j, _| x[j] / norms[j]))
 }
 
-/// AᵀB.
+/// Product AᵀB, n × k of an m × n and an m × k matrix.
 pub fn transposed_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
     checkpoint();
     let mut product = DMatrix::zeros(a.ncols(), b.ncols());

@@ -10,7 +10,7 @@ use crate::linalg::thin_svd;
 
 /// An axis of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "a frame has these three")]
 pub enum Axis {
     X,
     Y,

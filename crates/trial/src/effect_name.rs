@@ -14,7 +14,7 @@ macro_rules! effects {
         /// What an effect or a mistake is called; ordered as its text is.
         #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
         #[serde(from = "String")]
-        #[allow(missing_docs)] // the names say what they are
+        #[allow(missing_docs, reason = "the names say what they are")]
         pub enum EffectName {
             $($variant,)*
             /// A name that no trial conceals.

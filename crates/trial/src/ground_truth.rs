@@ -98,7 +98,7 @@ pub struct Concealed {
     pub effect: EffectName,
     /// Where, for people.
     pub location: String,
-    /// Where.
+    /// Where it acts, as the key compares it.
     pub place: Place,
     /// Its numbers, by name.
     pub parameters: Vec<Parameter>,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// (`form`) is no place and is not read.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-#[allow(missing_docs)] // the keys say what they are
+#[allow(missing_docs, reason = "the keys say what they are")]
 pub struct Place {
     /// A part of rig, rod or robot.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -77,7 +77,7 @@ impl From<Key> for String {
 /// One axis, or the two that turn together.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "the names say what they are")]
 pub enum Axes {
     One(String),
     Two([String; 2]),
@@ -86,7 +86,7 @@ pub enum Axes {
 /// One joint of the robot, from 1, or all of them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "the names say what they are")]
 pub enum Joints {
     One(usize),
     All(AllJoints),
@@ -95,7 +95,7 @@ pub enum Joints {
 /// As JSON `all`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "the names say what they are")]
 pub enum AllJoints {
     All,
 }

@@ -81,11 +81,11 @@ pub enum Warning {
     },
     /// Poses that the robot is judged by are also those that it is calibrated with.
     NotIndependent {
-        /// How many.
+        /// Validation rows that are calibrated with too.
         count: usize,
-        /// Of how many.
+        /// All validation rows.
         rows: usize,
-        /// The first one.
+        /// Name of the first such pose.
         pose: String,
     },
     /// A clamp that no row names.

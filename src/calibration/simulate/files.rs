@@ -11,6 +11,22 @@ use crate::units::{DEG, MM, STANDARD_GRAVITY, UM};
 ///
 /// `robot` and `rod` are what the campaign shall name. Joint angles are written to a
 /// ten-millionth of a degree, displacements to a tenth of a micrometre.
+///
+/// ```
+/// use rodcal::calibration::simulate::{Plan, campaign_files, simulate};
+/// use rodcal::prelude::*;
+///
+/// let (file, text) = Robot::builtin("tx90").expect("the program carries it");
+/// let robot = Robot::from_text(file, text, None, None)?;
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let model = Compliance::of_model(&rod, &Physics::default(), 20)?;
+/// let simulation = simulate(&robot, &rod, &model, &Plan::of_poses(8, 5))?;
+/// let files = campaign_files(&simulation, "builtin:tx90", "rod.toml");
+/// let (name, measurements) = &files[1];
+/// assert_eq!(name, "measurements.csv");
+/// assert_eq!(measurements.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit())).count(), 40);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 pub fn campaign_files(simulation: &Simulation, robot: &str, rod: &str) -> Vec<(String, String)> {
     vec![
         ("campaign.toml".into(), campaign(simulation, robot, rod)),

@@ -6,7 +6,7 @@ use super::plan::{AIM, CLAMPS, Plan};
 use crate::calibration::campaign::Group;
 use crate::delimited::Table;
 use crate::error::{Error, Result};
-use crate::robot::postures::{bring_to, has_arrived};
+use crate::robot::configurations::{bring_to, has_arrived};
 use crate::robot::{Kinematics, Robot, Setup};
 use crate::statistics::Random;
 use crate::units::{MM, significant};

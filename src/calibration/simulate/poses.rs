@@ -6,7 +6,7 @@ use super::plan::{AIM, Plan};
 use crate::calibration::campaign::Group;
 use crate::error::{Error, Result};
 use crate::optimal_design::{Criterion, Measurements, grow};
-use crate::robot::postures::{anywhere, bring_to, has_arrived, is_above_table, keeps_limits};
+use crate::robot::configurations::{anywhere, bring_to, has_arrived, is_above_table, keeps_limits};
 use crate::robot::{Kinematics, Parameter, Setup};
 use crate::statistics::Random;
 
@@ -22,8 +22,8 @@ const FAINT: f64 = 1e-6;
 
 /// Joint values with the index of their clamp, clamp after clamp.
 ///
-/// From candidates of random postures that bring the ball to each clamp, those are picked one by
-/// one that add most to the determinant of the information matrix, and so to O1.
+/// From candidates of random configurations that bring the ball to each clamp, those are picked one
+/// by one that add most to the determinant of the information matrix, and so to O1.
 pub(super) fn choose(
     truth: &Setup,
     free: &[Parameter],
@@ -33,7 +33,7 @@ pub(super) fn choose(
 ) -> Result<Vec<(usize, Vec<f64>)>> {
     let mut random = Random::seeded(plan.seed, 1);
     let mut kinematics = Kinematics::new(truth);
-    let mut postures = Vec::new();
+    let mut configurations = Vec::new();
     let mut all = Measurements::new(free.len());
     let torque = vec![1.0; truth.robot.joints.len()];
     for (group, clamp) in groups.iter().enumerate() {
@@ -41,14 +41,15 @@ pub(super) fn choose(
             let q = reach(truth, &clamp.device.origin, &mut kinematics, &mut random).ok_or_else(|| {
                 Error::NotApplicable {
                     what: format!("simulating {} with {}", clamp.name, truth.robot.name),
-                    why: "no posture within the joint limits brings this rod's ball there from above".into(),
+                    why: "no configuration within the joint limits brings this rod's ball there from above"
+                        .into(),
                     hint: "choose another robot or a rod of another size".into(),
                 }
             })?;
             kinematics.update(&q, &[]);
             let columns: Vec<Vector3<f64>> = free.iter().map(|&p| kinematics.column(p, &torque)).collect();
             all.push(group, &Matrix3xX::from_columns(&columns));
-            postures.push(q);
+            configurations.push(q);
             progress();
         }
     }
@@ -57,10 +58,13 @@ pub(super) fn choose(
     let quotas = vec![plan.poses_per_clamp; groups.len()];
     let mut chosen = grow(&all, &quotas, &before, &Criterion::Determinant, progress).unwrap_or_default();
     chosen.sort_by_key(|&index| all.group(index));
-    Ok(chosen.into_iter().map(|index| (all.group(index), std::mem::take(&mut postures[index]))).collect())
+    Ok(chosen
+        .into_iter()
+        .map(|index| (all.group(index), std::mem::take(&mut configurations[index])))
+        .collect())
 }
 
-/// Joint values of a random posture that brings the ball within the aim of a point, if one is
+/// Joint values of a random configuration that brings the ball within the aim of a point, if one is
 /// found.
 fn reach(
     truth: &Setup,

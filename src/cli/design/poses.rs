@@ -157,8 +157,7 @@ impl Expected {
     /// What is wrong while the robot is calibrated and used.
     pub fn budget(&self, campaign: &Campaign) -> Result<Budget> {
         let [noise, repeatability] = [self.noise_um, self.repeatability_um].map(|um| um.map(|um| um * UM));
-        let budget = Budget::of(campaign, noise, repeatability)?;
-        Ok(Budget { instrument: self.instrument_um * UM, ..budget })
+        Ok(Budget::of(campaign, noise, repeatability)?.with_instrument(self.instrument_um * UM))
     }
 
     /// True where something is stated.
@@ -176,20 +175,17 @@ impl DesignPoses {
             Some(path) => Source::File(path.display().to_string(), files::read_text(path)?),
             None => Source::Generated(self.generate as usize),
         };
-        let wanted = Wanted {
-            count: self.count as usize,
-            criterion: self.criterion.criterion(),
-            source,
-            limits: PoseLimits {
-                cone: self.cone_deg * DEG,
-                clear: self.clear_mm * MM,
-                change: self.change_deg * DEG,
-                table: self.table_mm.unwrap_or(TableHeight::Lowest),
-            },
-            mode: self.mode.map(ModeName::mode),
-            at: self.expected.place()?,
-            seed: self.seed,
-        };
+        let wanted = Wanted::new(self.count as usize, self.criterion.criterion(), source)
+            .with_limits(
+                PoseLimits::default()
+                    .with_cone(self.cone_deg * DEG)
+                    .with_clearance(self.clear_mm * MM)
+                    .with_change(self.change_deg * DEG)
+                    .with_table(self.table_mm.unwrap_or(TableHeight::Lowest)),
+            )
+            .with_mode(self.mode.map(ModeName::mode))
+            .used_at(self.expected.place()?)
+            .with_seed(self.seed);
         let budget = self.expected.budget(&campaign)?;
         let progress = Progress::new("looking for poses", self.generate as usize);
         let choosing = Progress::open("choosing poses");

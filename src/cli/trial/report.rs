@@ -31,15 +31,11 @@ pub fn report(score: &Score) -> Report {
         n => format!("{cases} cases with concealed effects: {n} targets are missed. {}.", missed.join(". ")),
     };
     let headline = score.remarks.iter().cloned().chain([headline]).collect::<Vec<_>>().join(" ");
-    Report {
-        title: "Concealed-effect trial".into(),
-        headline,
-        warnings: Vec::new(),
-        cards: cards(score),
-        sections: score.suites().map(|(suite, part)| section(suite, part)).collect(),
-        provenance: vec![("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into())],
-        ..Report::default()
-    }
+    let mut report = Report::new("Concealed-effect trial", headline);
+    report.cards = cards(score);
+    report.sections = score.suites().map(|(suite, part)| section(suite, part)).collect();
+    report.provenance = vec![("program".into(), concat!("rodcal ", env!("CARGO_PKG_VERSION")).into())];
+    report
 }
 
 /// How many cases, and of each suite how many targets are met and how often it is right when it
@@ -322,13 +318,11 @@ fn power(suite: &str, part: &Part) -> Option<Figure> {
         }
     }
     (!panels.is_empty()).then(|| {
-        Figure { panels, columns: 3, shared_legend: true, ..Figure::default() }
-            .named(format!("{suite}-power"))
-            .captioned(
-                "Probability of the right name against the rms change of the readings by the effect, \
+        Figure::new(panels, 3).with_shared_legend().named(format!("{suite}-power")).captioned(
+            "Probability of the right name against the rms change of the readings by the effect, \
                  over their noise. All cases with one effect count, also those that are not \
                  identifiable.",
-            )
+        )
     })
 }
 

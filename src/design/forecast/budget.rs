@@ -11,6 +11,7 @@ const REPEATABILITY: f64 = 30.0 * UM;
 
 /// Sizes of what is wrong, m, standard deviations.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Budget {
     /// Of one measured coordinate: sensors and repeatability.
     pub noise: f64,
@@ -79,6 +80,21 @@ impl Budget {
             um(SENSORS)
         );
         Ok(budget)
+    }
+
+    /// With clamps whose places are known to this standard deviation of a coordinate, m.
+    pub fn with_clamps(self, clamps: f64) -> Budget {
+        Budget { clamps, ..self }
+    }
+
+    /// With unseen poses measured by an instrument of this root mean square error, m.
+    pub fn with_instrument(self, instrument: f64) -> Budget {
+        Budget { instrument, ..self }
+    }
+
+    /// With every random number from this seed.
+    pub fn with_seed(self, seed: u64) -> Budget {
+        Budget { seed, ..self }
     }
 }
 

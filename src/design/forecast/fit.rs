@@ -24,7 +24,7 @@ pub(super) struct Fit {
     along: DMatrix<f64>,
     /// d², m².
     squares: DVector<f64>,
-    /// V.
+    /// Axes V, a column each, in units of what is known before.
     axes: DMatrix<f64>,
     /// B′·V, m.
     unseen: DMatrix<f64>,

@@ -6,12 +6,12 @@ use crate::calibration::campaign::{Campaign, Group, Refit, Targets};
 use crate::calibration::{Compensation, Planned, validate};
 use crate::error::{Error, Result};
 use crate::linalg::thin_svd;
-use crate::robot::postures::{anywhere, is_above_table};
+use crate::robot::configurations::{anywhere, is_above_table};
 use crate::robot::{Kinematics, Parameter, Setup};
 use crate::statistics::Random;
 use crate::units::{MM, significant};
 
-/// Poses of a working volume, and random postures before it counts as out of reach.
+/// Poses of a working volume, and random configurations before it counts as out of reach.
 const POSES: usize = 100;
 const MOST_TRIALS: usize = 200_000;
 /// Fewer poses are fitted by base and tool alone.
@@ -37,8 +37,8 @@ pub struct Unseen {
     /// ∂tip/∂parameter, three rows a pose, without what base and tool can take up where they are
     /// aligned anew.
     pub slopes: DMatrix<f64>,
-    /// Which poses, in words.
-    pub words: String,
+    /// Which poses, as the middle of a sentence.
+    pub description: String,
     /// Whether base and tool are aligned anew.
     pub is_aligned: bool,
     /// What base and tool can take up: orthonormal columns.
@@ -103,7 +103,7 @@ impl Unseen {
         {
             there = Setup::new(robot, base, tool);
         }
-        let words = match (at, measured) {
+        let description = match (at, measured) {
             (Where::Validation, Some(validation)) => {
                 format!("the {} poses of {}", poses.len(), validation.file)
             }
@@ -140,11 +140,11 @@ impl Unseen {
             slopes -= &basis * basis.tr_mul(&slopes);
             taken = Some(basis);
         }
-        Ok(Unseen { slopes, words, is_aligned, taken })
+        Ok(Unseen { slopes, description, is_aligned, taken })
     }
 }
 
-/// Random postures within the joint limits, and above the height of the base where it stands
+/// Random configurations within the joint limits, and above the height of the base where it stands
 /// upright on a table.
 fn within(setup: &Setup, volume: Option<(&[f64; 3], &[f64; 3])>, has_table: bool) -> Result<Vec<Vec<f64>>> {
     let mut random = Random::seeded(1, 6);
@@ -166,7 +166,7 @@ fn within(setup: &Setup, volume: Option<(&[f64; 3], &[f64; 3])>, has_table: bool
     }
     Err(Error::NotApplicable {
         what: format!("a forecast for {} in this volume", setup.robot.name),
-        why: format!("of {MOST_TRIALS} random postures {} have their tip there", poses.len()),
+        why: format!("of {MOST_TRIALS} random configurations {} have their tip there", poses.len()),
         hint: "state a volume within the robot's reach, in {0}, or poses with --at".into(),
     })
 }

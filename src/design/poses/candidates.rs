@@ -9,14 +9,14 @@ use crate::delimited::Table;
 use crate::error::{Error, Place, Result};
 use crate::parallel::in_parallel;
 use crate::robot::Kinematics;
-use crate::robot::postures::{anywhere, bring_to};
+use crate::robot::configurations::{anywhere, bring_to};
 use crate::statistics::Random;
 use crate::units::{DEG, MM, significant};
 
 /// Where candidates come from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Source {
-    /// Random postures that bring the ball to the places, so many in all.
+    /// Random configurations that bring the ball to the places, so many in all.
     Generated(usize),
     /// A table (CSV) with joint columns: name and text.
     File(String, String),
@@ -78,9 +78,9 @@ impl Candidates {
     /// From a source, without those that break a limit or are like another one.
     ///
     /// # Errors
-    /// [`Error::NotApplicable`] for places that no posture reaches; [`Error::Input`] for a table
-    /// without the robot's joint columns, with a clamp that the campaign does not know, or without
-    /// a pose that keeps the limits.
+    /// [`Error::NotApplicable`] for places that no configuration reaches; [`Error::Input`] for a
+    /// table without the robot's joint columns, with a clamp that the campaign does not know, or
+    /// without a pose that keeps the limits.
     pub(super) fn new(
         around: &Surroundings,
         source: &Source,
@@ -128,7 +128,7 @@ fn generated(
     let quota = count.div_ceil(places);
     let of_place = |place: usize, from: usize, to: usize, trials: usize| {
         let found = in_parallel(to - from, |k| {
-            let found = posture(around, place, seed, from + k, trials);
+            let found = configuration(around, place, seed, from + k, trials);
             progress(1);
             found
         });
@@ -160,8 +160,8 @@ fn generated(
     Ok(candidates)
 }
 
-/// A random posture that brings the ball to a place and keeps all limits, if one is found.
-fn posture(
+/// A random configuration that brings the ball to a place and keeps all limits, if one is found.
+fn configuration(
     around: &Surroundings,
     place: usize,
     seed: u64,
@@ -190,7 +190,7 @@ fn posture(
     (None, tally)
 }
 
-/// Why no posture was found for a place, and how much is missing.
+/// Why no configuration was found for a place, and how much is missing.
 fn why_not(around: &Surroundings, place: usize, tally: &Tally) -> String {
     let name = match &around.places[place].name {
         GroupName::Tracked => "a pose".to_owned(),
@@ -224,7 +224,7 @@ fn why_not(around: &Surroundings, place: usize, tally: &Tally) -> String {
         format!("in {count} {}{least}", obstacle.description())
     });
     let broken: Vec<String> = broken.collect();
-    format!("{name} is reached in {reached} of {} postures, but {}", tally.tried, broken.join(", "))
+    format!("{name} is reached in {reached} of {} configurations, but {}", tally.tried, broken.join(", "))
 }
 
 /// Poses of any table with the robot's joint columns. The column `clamp` names the place; without

@@ -6,6 +6,7 @@ use crate::optimal_design::Criterion;
 
 /// What chosen poses shall be good for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PoseCriterion {
     /// O1 = (Π σᵢ)^(1/m)/√n, as the paper; the larger the better.
     O1,
@@ -22,7 +23,7 @@ pub enum PoseCriterion {
 }
 
 impl PoseCriterion {
-    /// All.
+    /// All criteria, in the order of their discriminants.
     pub const ALL: [PoseCriterion; 5] =
         [PoseCriterion::O1, PoseCriterion::O4, PoseCriterion::D, PoseCriterion::A, PoseCriterion::Forecast];
 

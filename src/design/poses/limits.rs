@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use crate::calibration::Campaign;
 use crate::calibration::campaign::Group;
-use crate::robot::postures::has_arrived;
+use crate::robot::configurations::has_arrived;
 use crate::robot::{Kinematics, Robot, Setup};
 use crate::units::{DEG, MM};
 
@@ -18,6 +18,7 @@ const SAME: f64 = MM;
 
 /// Limits of poses beside those of the joints.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct PoseLimits {
     /// Largest angle between the rod at its ball and the axis of the clamp, rad. The axis is the
     /// direction of the contact force (it pushes the ball out of the device), else upwards.
@@ -49,8 +50,31 @@ impl Default for PoseLimits {
     }
 }
 
+impl PoseLimits {
+    /// With this largest angle between rod and clamp, rad.
+    pub fn with_cone(self, cone: f64) -> Self {
+        PoseLimits { cone, ..self }
+    }
+
+    /// With this radius about every clamp kept clear, m.
+    pub fn with_clearance(self, clear: f64) -> Self {
+        PoseLimits { clear, ..self }
+    }
+
+    /// With this least change between two poses of a clamp, rad or m.
+    pub fn with_change(self, change: f64) -> Self {
+        PoseLimits { change, ..self }
+    }
+
+    /// With the table there.
+    pub fn with_table(self, table: TableHeight) -> Self {
+        PoseLimits { table, ..self }
+    }
+}
+
 /// Why a pose is no candidate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Obstacle {
     /// The ball does not get to the clamp.
     Far,
@@ -65,11 +89,11 @@ pub enum Obstacle {
 }
 
 impl Obstacle {
-    /// All.
+    /// All obstacles, in the order of their discriminants.
     pub const ALL: [Obstacle; 5] =
         [Obstacle::Far, Obstacle::JointLimit, Obstacle::Cone, Obstacle::Block, Obstacle::Table];
 
-    /// In JSON.
+    /// Its name in JSON.
     pub fn key(self) -> &'static str {
         ["clamp_out_of_reach", "joint_limits", "rod_cone", "clamp_block", "table"][self as usize]
     }

@@ -25,6 +25,7 @@ const OF_FAINT: f64 = 0.01;
 
 /// What is asked for.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Wanted {
     /// So many poses in all, spread evenly over the places.
     pub count: usize,
@@ -42,18 +43,48 @@ pub struct Wanted {
     pub seed: u64,
 }
 
+impl Wanted {
+    /// So many poses of a source by a criterion, within the usual limits, in the campaign's own
+    /// mode, for its validation poses, seed 1.
+    pub fn new(count: usize, criterion: PoseCriterion, source: Source) -> Wanted {
+        let limits = PoseLimits::default();
+        Wanted { count, criterion, source, limits, mode: None, at: Where::Validation, seed: 1 }
+    }
+
+    /// Within these limits.
+    pub fn with_limits(self, limits: PoseLimits) -> Wanted {
+        Wanted { limits, ..self }
+    }
+
+    /// With the rod compensated so; `None` is the campaign's own mode.
+    pub fn with_mode(self, mode: Option<Mode>) -> Wanted {
+        Wanted { mode, ..self }
+    }
+
+    /// For a robot that is used there.
+    pub fn used_at(self, at: Where) -> Wanted {
+        Wanted { at, ..self }
+    }
+
+    /// With every random number from this seed.
+    pub fn with_seed(self, seed: u64) -> Wanted {
+        Wanted { seed, ..self }
+    }
+}
+
 /// How well one parameter will be known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Known {
-    /// Which.
+    /// The parameter of robot, base or tool.
     pub parameter: Parameter,
-    /// Standard uncertainty before, SI.
+    /// Standard uncertainty before it, SI.
     pub before: f64,
-    /// And after, SI.
+    /// Standard uncertainty after the calibration with the chosen poses, SI.
     pub after: f64,
 }
 
 /// Chosen poses and what they are worth.
+#[non_exhaustive]
 pub struct PoseStudy<'c> {
     /// The campaign.
     pub campaign: &'c Campaign,
@@ -98,20 +129,12 @@ impl<'c> PoseStudy<'c> {
     /// and then for every pose that is taken or held against the others.
     ///
     /// ```
-    /// use rodcal::design::{Budget, PoseCriterion, PoseLimits, PoseStudy, Source, Wanted, Where};
+    /// use rodcal::design::{Budget, PoseCriterion, PoseStudy, Source, Wanted};
     /// use rodcal::prelude::*;
     ///
     /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
     /// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6))?;
-    /// let wanted = Wanted {
-    ///     count: 20,
-    ///     criterion: PoseCriterion::O1,
-    ///     source: Source::Generated(100),
-    ///     limits: PoseLimits::default(),
-    ///     mode: None,
-    ///     at: Where::Validation,
-    ///     seed: 1,
-    /// };
+    /// let wanted = Wanted::new(20, PoseCriterion::O1, Source::Generated(100));
     /// let study = PoseStudy::new(&campaign, wanted, budget, &|_| {})?;
     /// assert_eq!((study.chosen.len(), study.places.len()), (20, 5));
     /// assert!(study.value > 1.05 * study.value_random); // O1 of these poses and of random ones
@@ -214,7 +237,7 @@ impl<'c> PoseStudy<'c> {
             forecast: forecaster.forecast(&ordered, mode)?,
             forecast_random: forecaster.forecast(&random, mode)?,
             budget: forecaster.budget.clone(),
-            unseen: forecaster.unseen.words.clone(),
+            unseen: forecaster.unseen.description.clone(),
             is_aligned: forecaster.unseen.is_aligned,
             chosen: ordered,
             campaign,

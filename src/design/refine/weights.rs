@@ -6,6 +6,23 @@ use crate::error::{Error, Result};
 /// What each goal of `space` weighs, 1 in all, as somebody wrote it: "mass_g", or
 /// "c_rod_um=2,mass_g=1"; without a word the first goal alone.
 ///
+/// ```
+/// use rodcal::design::{DesignSpace, weights};
+///
+/// let space = DesignSpace::from_toml("design.toml", "
+///     [geometry]
+///     l1_mm = 150
+///     l2_mm = 525
+///     [catalogue]
+///     file = \"builtin\"
+///     [objectives]
+///     minimise = [\"c_rod_um\", \"mass_g\"]
+/// ", &|_| unreachable!())?;
+/// assert_eq!(weights(&space, Some("c_rod_um=3,mass_g=1"))?, [0.75, 0.25]);
+/// assert_eq!(weights(&space, None)?, [1.0, 0.0]);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Argument`] for what is no goal of the design file, and for what is no weight.
 pub fn weights(space: &DesignSpace, asked: Option<&str>) -> Result<Vec<f64>> {

@@ -37,6 +37,17 @@ pub type CalibrationDiagnosis<'c> = Diagnosed<CalibrationModel<'c>>;
 /// Calibrates `campaign` as it was recorded and diagnoses what is left: for one that is known to be
 /// free of mistakes, such as a simulated one. Of any other [`mend`](super::mend) undoes them first.
 ///
+/// ```
+/// use rodcal::diagnosis::calibration::diagnose_as_recorded;
+/// use rodcal::prelude::*;
+///
+/// // simulated with a true rod that is 1.013 times as compliant as its model: too little to be seen
+/// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let found = diagnose_as_recorded(&campaign, Mode::Fea, &Options::default())?;
+/// assert!(found.diagnosis.findings.is_empty());
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`calibrate`].
 pub fn diagnose_as_recorded<'c>(

@@ -134,6 +134,20 @@ pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Opti
 /// One line for each mistake that `campaign` seems to hold, for those who do not ask for a
 /// diagnosis.
 ///
+/// ```
+/// use rodcal::diagnosis::calibration::suspected;
+/// use rodcal::prelude::*;
+///
+/// let mut campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let none = Neighbours::default();
+/// assert!(suspected(&campaign, Mode::Fea, &none)?.is_empty());
+/// // a joint that counts the other way round
+/// campaign.measurements.joint_values.iter_mut().skip(3).step_by(6).for_each(|q| *q = -*q);
+/// let found = suspected(&campaign, Mode::Fea, &none)?;
+/// assert!(found[0].spoils_fit && found[0].description.contains("q4_deg"), "{found:?}");
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`mend`].
 pub fn suspected(campaign: &Campaign, mode: Mode, others: &Neighbours) -> Result<Vec<Suspicion>> {

@@ -139,7 +139,7 @@ fn proposal(poses: FeasiblePoses, gained: &[f64], rivals: &[&Rival]) -> Proposal
     let separated = || gained.iter().zip(rivals).filter(|(gained, _)| separates(**gained));
     let FeasiblePoses { instruction, plan } = poses;
     Proposal {
-        words: instruction,
+        description: instruction,
         plan: Some(Plan::Poses(plan)),
         log_odds: separated().map(|(gained, _)| *gained).fold(f64::INFINITY, f64::min),
         separates_from: separated().map(|(_, rival)| place(rival)).collect(),

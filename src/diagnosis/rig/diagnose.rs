@@ -35,6 +35,21 @@ const SHOWN: f64 = 0.3;
 /// Diagnoses `readings` against the FEA model of `rod` as its file gives it, or, without a rod,
 /// against straight lines through the origin.
 ///
+/// ```
+/// use rodcal::diagnosis::rig::diagnose;
+/// use rodcal::prelude::*;
+///
+/// // without a rod: against straight lines through the origin
+/// let mut table = "axis,load_n,dy_um\n".to_owned();
+/// for step in 1..=8 {
+///     let load = f64::from(step);
+///     table += &format!("y,{load},{:.1}\n", 45.0 * load + 1.5 * load * load); // no straight line
+/// }
+/// let found = diagnose(&Readings::from_text("readings.csv", &table)?, None)?;
+/// assert!(found.diagnosis.is_mismatch());
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// See [`RigModel::new`].
 pub fn diagnose(readings: &Readings, rod: Option<&Rod>) -> Result<RigDiagnosis> {
@@ -47,6 +62,20 @@ pub fn diagnose(readings: &Readings, rod: Option<&Rod>) -> Result<RigDiagnosis> 
 /// Mistakes are looked for first. They stand before all other findings, which are those of the
 /// corrected readings and the corrected rod.
 ///
+/// ```
+/// use rodcal::answer::rods_beside;
+/// use rodcal::diagnosis::rig::diagnose_among;
+/// use rodcal::prelude::*;
+///
+/// // readings of rod 5, with the file of another rod
+/// let wrong = Rod::read("rods/2.toml".as_ref())?;
+/// let readings = Readings::read("stiffness_data/5.csv".as_ref())?;
+/// let others = rods_beside("rods/2.toml".as_ref());
+/// let found = diagnose_among(&readings, Some(&wrong), &others)?;
+/// assert_eq!(found.diagnosis.findings[0].effect.name, "rod_mistake");
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Input`] for more than 100 000 rows; see also [`RigModel::new`].
 pub fn diagnose_among(
@@ -58,6 +87,27 @@ pub fn diagnose_among(
 }
 
 /// The same, with effects that a lab describes itself: they compete with those of the library.
+///
+/// ```
+/// use rodcal::diagnosis::rig::{OwnEffect, diagnose_with};
+/// use rodcal::prelude::*;
+///
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let readings = Readings::read("stiffness_data/5.csv".as_ref())?;
+/// let own = OwnEffect::from_toml("own.toml", "
+///     [[effect]]
+///     name = \"foot\"
+///     words = \"a foot\"
+///     place = \"clamp\"
+///     variable = \"load\"
+///     law = \"a*tanh(F/3)\"
+///     parameter = [{ name = \"a\", size = 20 }]
+/// ")?;
+/// let found = diagnose_with(&readings, Some(&rod), &[], &own)?;
+/// // it was looked for; friction explains the readings better
+/// assert_eq!(found.diagnosis.findings[0].effect.name, "friction");
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`diagnose_among`]; [`Error::Input`] for an effect that readings and rod do not fit.

@@ -49,6 +49,17 @@ use crate::rod::Rod;
 /// diagnosis: `load_n looks like kilograms: the rod seems 9.8 times softer than its file; rodcal
 /// diagnose rig says more`.
 ///
+/// ```
+/// use rodcal::diagnosis::rig::suspected;
+/// use rodcal::prelude::*;
+///
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let text = std::fs::read_to_string("stiffness_data/5.csv")?.replace("load_kg", "load_n");
+/// let suspicions = suspected(&Readings::from_text("5.csv", &text)?, Some(&rod))?;
+/// assert!(suspicions[0].starts_with("load_n looks like kilograms"), "{suspicions:?}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// What the beam model refuses of the rod.
 pub fn suspected(readings: &Readings, rod: Option<&Rod>) -> Result<Vec<String>> {

@@ -31,7 +31,7 @@ const IMPLAUSIBLE: f64 = 0.01;
 /// An evidence whose nominal numbers stand among its background, and how to get them back.
 pub struct Folded {
     pub evidence: Evidence,
-    /// V.
+    /// Basis V of the nominal numbers and offsets: a column each.
     basis: DMatrix<f64>,
     /// First of its columns in the background.
     first: usize,

@@ -71,7 +71,7 @@ impl DataParts {
         DataParts { data, part }
     }
 
-    /// How many.
+    /// Number of parts.
     pub fn parts(&self) -> usize {
         self.data.len()
     }

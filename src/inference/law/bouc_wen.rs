@@ -17,6 +17,10 @@
 //!
 //! Dissipation is never negative for σ ≥ ½ (S. Erlicher, N. Point, C. R. Mécanique 332 (2004)
 //! 51–57). With σ = ½ it returns along a straight line; for n → ∞ that is a stop operator.
+//!
+//! It stands among the memories of a law because it is one of the shapes that what is left may
+//! have, as a stop operator and a lag are: x is any variable of a recording, z any change, and what
+//! slips or where is not known here.
 
 /// What a loop looks like besides how wide it is.
 #[derive(Debug, Clone, Copy, PartialEq)]

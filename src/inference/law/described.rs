@@ -234,15 +234,15 @@ fn apart(law: &Law, rival: &LawRival, x: f64) -> f64 {
     let per_result =
         law.site.directions.iter().flat_map(|(_, w)| w).fold(0.0, |most: f64, w| most.max(w.abs()));
     let of_direction = |direction: usize| {
-        let (level, slope) = taken_up(law, rival, direction);
+        let (level, slope) = nuisance_line(law, rival, direction);
         (law.at(direction, x) - rival.at(direction, x) - level - slope * x).abs() * per_result
     };
     (0..law.site.directions.len()).map(of_direction).fold(0.0, f64::max)
 }
 
-/// What zeros and stiffnesses take up of the difference of two laws: the straight line through it
-/// at the data. Level and slope.
-fn taken_up(law: &Law, rival: &LawRival, direction: usize) -> (f64, f64) {
+/// What the nuisance space (zeros and stiffnesses) takes up of the difference of two laws: the
+/// straight line through it at the data, its level (m) and its slope (m per unit of the variable).
+fn nuisance_line(law: &Law, rival: &LawRival, direction: usize) -> (f64, f64) {
     let own: Vec<f64> = law.points.iter().filter(|p| p.direction == direction).map(|p| p.x).collect();
     let columns = DMatrix::from_fn(own.len(), 2, |i, j| if j == 0 { 1.0 } else { own[i] });
     let differences = own.iter().map(|&x| law.at(direction, x) - rival.at(direction, x));

@@ -36,7 +36,7 @@ pub enum FormConstant {
     Corner,
     /// ξ₀ of an approach, a decay or a logarithm: a length along the variable.
     Scale,
-    /// 1/f.
+    /// Period of a wave, 1/f, of the variable.
     Period,
     /// Half the width of a play, of the variable.
     Play,
@@ -49,17 +49,17 @@ pub enum FormConstant {
 /// A number of a law with its 95 % interval.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Constant {
-    /// In formulas.
+    /// Symbol in formulas: `c1`.
     pub symbol: String,
-    /// In sentences.
+    /// What it is called in sentences.
     pub name: String,
     /// Unit for people; nothing for a plain number.
     pub unit: String,
     /// Estimate, in the unit.
     pub value: f64,
-    /// Lower end.
+    /// Lower end of the 95 % interval, in the unit.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of the 95 % interval, in the unit.
     pub high: f64,
     /// Other values within the interval that these data do not distinguish from it, each apart from
     /// the rest: periods that every reading meets alike.

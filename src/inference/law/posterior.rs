@@ -37,7 +37,7 @@ impl Posterior {
         Posterior { points: all.map(point).collect() }
     }
 
-    /// Between what.
+    /// Lowest and highest value that the density is known at.
     pub fn ends(&self) -> (f64, f64) {
         let end = |point: Option<&(f64, f64)>| point.map_or(0.0, |point| point.0);
         (end(self.points.first()), end(self.points.last()))

@@ -94,7 +94,7 @@ pub struct Law {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Second {
-    /// The law.
+    /// The law that acts beside the first one.
     pub law: Law,
     /// Held-out error with the first law, and with what the search for another one finds without
     /// each fold besides, m.
@@ -105,7 +105,7 @@ pub struct Second {
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct Beside {
-    /// The findings.
+    /// Terms of the findings, with their values beside the law.
     pub terms: Vec<Term>,
     /// Factors of the background of the settled evidence, among which nominal numbers are.
     pub background: Vec<f64>,
@@ -115,7 +115,7 @@ pub struct Beside {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct LawRival {
-    /// Where.
+    /// Place and variable of the other law.
     pub site: Site,
     /// What it looks like.
     pub form: Form,

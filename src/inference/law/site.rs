@@ -28,7 +28,7 @@ pub struct Course {
 /// What was read at once.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Instant {
-    /// Its data.
+    /// Numbers of the data that were read then, from 0.
     pub data: Vec<usize>,
     /// Time since the variable was changed to what it is, s; NaN where nobody knows.
     pub elapsed: f64,
@@ -38,8 +38,9 @@ pub struct Instant {
 
 /// A place with a variable.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Site {
-    /// Where.
+    /// The part of rig, rod or robot that the law changes.
     pub location: Location,
     /// What the law changes there: `displacement along the load`.
     pub result: Measure,
@@ -66,6 +67,21 @@ pub struct Site {
 const SAME: f64 = 1e-6;
 
 impl Site {
+    /// A place where a law of these `forms` changes `result` as a function of `variable`, by
+    /// `directions` (a name and a number per datum each), the variable being `values` (SI, one per
+    /// datum): without memory, and predicted rather than recorded.
+    pub fn new(
+        location: Location,
+        result: Measure,
+        variable: Measure,
+        directions: Vec<(String, Vec<f64>)>,
+        values: Vec<f64>,
+        forms: &'static [Form],
+    ) -> Site {
+        let (moves, courses) = (vec![0.0; values.len()], Vec::new());
+        Site { location, result, variable, directions, values, recorded: None, moves, courses, forms }
+    }
+
     /// Data that the law concerns.
     pub fn concerned(&self) -> impl Iterator<Item = usize> + '_ {
         let acts = |i: usize| self.directions.iter().any(|(_, weights)| weights[i] != 0.0);

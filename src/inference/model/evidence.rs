@@ -183,7 +183,7 @@ impl Evidence {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Covariate {
-    /// Which.
+    /// The number that the values are of.
     pub variable: Variable,
     /// One per datum; NaN where it is not known.
     pub values: Vec<f64>,
@@ -199,6 +199,12 @@ impl Covariate {
 }
 
 /// Root mean square.
+///
+/// ```
+/// use rodcal::inference::rms;
+///
+/// assert!((rms(&vec![3.0, 4.0].into()) - 12.5f64.sqrt()).abs() < 1e-12);
+/// ```
 pub fn rms(v: &DVector<f64>) -> f64 {
     v.norm() / (v.len().max(1) as f64).sqrt()
 }

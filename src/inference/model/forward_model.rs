@@ -18,7 +18,7 @@ pub const DERIVATIVE_STEP: f64 = 1e-4;
 pub struct Candidate {
     /// The effect. Candidates of one effect share its prior probability.
     pub effect: &'static Effect,
-    /// Where.
+    /// The place at which it acts.
     pub location: Location,
     /// Its parameters; without effect at their neutral values.
     pub parameters: Vec<Parameter>,
@@ -34,6 +34,7 @@ pub struct Candidate {
 
 /// A number that says how strong an effect is.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Parameter {
     /// Name with its unit, for example `force_n`.
     pub name: String,
@@ -46,6 +47,24 @@ pub struct Parameter {
     pub size: f64,
     /// Physical bounds, SI; ±∞ where there are none.
     pub bounds: (f64, f64),
+}
+
+impl Parameter {
+    /// A parameter without bounds that is 0 where nothing happens: its name with its unit, and the
+    /// standard deviation of its prior, SI.
+    pub fn new(name: impl Into<String>, unit: Unit, size: f64) -> Parameter {
+        Parameter { name: name.into(), unit, neutral: 0.0, size, bounds: (f64::NEG_INFINITY, f64::INFINITY) }
+    }
+
+    /// With this value where nothing happens, SI.
+    pub fn with_neutral(self, neutral: f64) -> Parameter {
+        Parameter { neutral, ..self }
+    }
+
+    /// Within these bounds, SI.
+    pub fn within(self, bounds: (f64, f64)) -> Parameter {
+        Parameter { bounds, ..self }
+    }
 }
 
 /// A parameter that adds its value to all data of a sequence from one of them on.
@@ -138,6 +157,13 @@ pub trait ForwardModel: Sync {
 }
 
 impl Candidate {
+    /// An effect at a place with its parameters: as probable as at its other places, and neither an
+    /// alternative of another one nor a curve that nobody has named.
+    pub fn new(effect: &'static Effect, location: Location, parameters: Vec<Parameter>) -> Candidate {
+        let (is_alternative, is_nonparametric) = (false, false);
+        Candidate { effect, location, parameters, weight: 1.0, is_alternative, is_nonparametric }
+    }
+
     /// The candidate at its neutral values.
     pub fn neutral(&self, index: usize) -> Term {
         Term { candidate: index, values: self.parameters.iter().map(|p| p.neutral).collect() }

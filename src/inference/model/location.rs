@@ -18,21 +18,21 @@ pub enum Location {
     Part(Part),
     /// A part under loads along one axis only.
     UnderLoads {
-        /// The part.
+        /// The part of rig or rod.
         part: Part,
         /// Axis of the loads.
         axis: Axis,
     },
     /// A part in one session, for which it was set up anew.
     InSession {
-        /// The part.
+        /// The part of rig, rod or robot.
         part: Part,
         /// The session, as the file names it.
         session: String,
     },
     /// A part, by one of several forms of a law: `rod, since each load, t0 10 s`.
     Form {
-        /// The part.
+        /// The part of rig, rod or robot.
         part: Part,
         /// The form, for people.
         form: String,
@@ -54,21 +54,21 @@ pub enum Location {
     SensorTurn {
         /// Its own axis.
         from: Axis,
-        /// The other one.
+        /// The axis that it is turned towards.
         towards: Axis,
     },
     /// Loads that are turned from their axis towards another one.
     LoadTurn {
         /// Their own axis.
         from: Axis,
-        /// The other one.
+        /// The axis that they are turned towards.
         towards: Axis,
     },
     /// Loads along two axes, turned together about the third.
     LoadFrame {
         /// The two axes.
         axes: [Axis; 2],
-        /// The third.
+        /// The third axis, about which they are turned.
         about: Axis,
     },
     /// Everything of a run after one row of the file.
@@ -157,26 +157,39 @@ pub struct Key {
 
 /// A part of rig, rod or robot that every file of its kind has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs)]
 #[non_exhaustive]
 pub enum Part {
+    /// The rod as a whole.
     Rod,
+    /// The rod's connection to the flange or the clamp of the rig.
     Root,
+    /// The bend between the rod's pipes.
     Bend,
+    /// The slide through which the rig's loads act.
     Slide,
+    /// What the rig's loads hang on.
     Hanger,
+    /// What holds the rod on the rig.
     Clamp,
+    /// The tip of the rod, where its ball is.
     Tip,
+    /// The flange of the robot.
     Flange,
+    /// What the flange carries.
     Tool,
+    /// The arm as a whole.
     Arm,
+    /// The base of the robot.
     Base,
+    /// All sensors of the rig.
     Sensors,
+    /// The frame in which the rig's loads have their directions.
     LoadFrame,
 }
 
 /// One pass through the loads of an axis.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Run {
     /// Axis of the loads.
     pub axis: Axis,
@@ -184,8 +197,16 @@ pub struct Run {
     pub name: Option<RunName>,
 }
 
+impl Run {
+    /// A run along an axis, by its name where there are several.
+    pub fn new(axis: Axis, name: Option<RunName>) -> Run {
+        Run { axis, name }
+    }
+}
+
 /// What names a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RunName {
     /// By the file's own name.
     Trial(String),

@@ -7,23 +7,29 @@ const MOST_DECIMALS: i32 = 6;
 
 /// A value with its interval, in one unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Quantity {
-    /// Value.
+    /// Estimate, in the unit of the quantity.
     pub value: f64,
-    /// Lower end of the interval.
+    /// Lower end of its 95 % interval, in the same unit.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of its 95 % interval, in the same unit.
     pub high: f64,
 }
 
 impl Quantity {
+    /// A value with the ends of its 95 % interval, in one unit.
+    pub fn new(value: f64, low: f64, high: f64) -> Quantity {
+        Quantity { value, low, high }
+    }
+
     /// The quantity as another one that grows or falls with it.
     pub fn map(self, change: impl Fn(f64) -> f64) -> Quantity {
         let (a, b) = (change(self.low), change(self.high));
         Quantity { value: change(self.value), low: a.min(b), high: a.max(b) }
     }
 
-    /// Its size.
+    /// The quantity without its sign: ends change places where the value is negative.
     pub fn size(self) -> Quantity {
         if self.value < 0.0 { self.map(|value| -value) } else { self }
     }

@@ -38,6 +38,7 @@ pub enum Variable {
 
 /// What of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum JointVariable {
     /// Its angle, rad.
     Angle,

@@ -41,9 +41,9 @@ struct Step {
     datum: usize,
     /// f from the datum before; 0 for the first.
     carried: f64,
-    /// K.
+    /// Kalman gain K: what of the innovation is carried on.
     gain: f64,
-    /// √S.
+    /// Standard deviation √S of the innovation, over that of a datum.
     sd: f64,
 }
 

@@ -14,11 +14,11 @@ use crate::inference::model::evidence::Evidence;
 use crate::inference::noise::whitening::Whitening;
 use crate::statistics::f_survival;
 
-/// The test.
+/// F test of the averages of repeats against their scatter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct LackOfFit {
-    /// F.
+    /// Variance of the averages about the hypothesis over that of repeats about them.
     pub f: f64,
     /// Probability of such an F if nothing were left out.
     pub p_value: f64,

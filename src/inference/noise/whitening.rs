@@ -38,7 +38,7 @@ pub struct Whitening {
     roots: Vec<f64>,
     /// Rows of every group with more than one datum, and what is taken off along a.
     groups: Vec<(Vec<usize>, f64)>,
-    /// φ.
+    /// Correlation φ of neighbours that share an error, beyond that.
     pub correlation: f64,
     /// Of errors that neighbours along a course have in common.
     correlated_noise: Option<Filter>,
@@ -50,7 +50,7 @@ pub struct Whitening {
     coefficients: Vec<DVector<f64>>,
     /// How many nuisance columns there are.
     nuisance: usize,
-    /// ρ.
+    /// Ratio ρ of the variance of shared errors to that of errors of each datum.
     pub ratio: f64,
     /// Data less what the nuisance columns absorb.
     pub degrees_of_freedom: usize,

@@ -196,7 +196,7 @@ impl Finding {
         };
         let separated = rivals.iter().filter(is_separated);
         Some(Proposal {
-            words: checked.direct_check?.to_owned(),
+            description: checked.direct_check?.to_owned(),
             plan: None,
             log_odds: DECISIVE,
             separates_from: separated.map(|rival| (rival.effect, rival.location.place())).collect(),

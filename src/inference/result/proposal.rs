@@ -7,8 +7,8 @@ use crate::spatial::{Axis, Direction, Pose};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Proposal {
-    /// In the user's words; a full sentence.
-    pub words: String,
+    /// What to do, as the user calls it: a full sentence.
+    pub description: String,
     /// The same as numbers; `None` for what is weighed or gauged without any recording.
     pub plan: Option<Plan>,
     /// By how much it would separate the finding from the closest of `separates_from`: ln of the
@@ -54,7 +54,7 @@ pub struct LoadPlan {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct PosePlan {
-    /// In their order.
+    /// The poses, in the order in which they are measured.
     pub poses: Vec<PlannedPose>,
     /// A clamp that is not there yet, its name and its frame in {W}; its index is the next one.
     pub new_fixture: Option<(String, Pose)>,

@@ -23,7 +23,7 @@ pub enum Rank {
     Adopted,
     /// It may stand in the place of a finding.
     Rival,
-    /// Neither.
+    /// It is neither a finding nor the rival of one.
     Rejected,
 }
 

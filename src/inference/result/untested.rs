@@ -18,7 +18,7 @@ pub struct NotTestable {
 pub struct Absorbed {
     /// What it is.
     pub effect: &'static Effect,
-    /// Where.
+    /// The place at which it would act.
     pub location: Location,
     /// ‖M·C‖/‖C‖: share of its columns that the base model cannot take up.
     pub unabsorbed: f64,

@@ -37,7 +37,7 @@ const MOST_SHARED: f64 = 10.0;
 /// Whether pairs of effects are screened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pairs {
-    /// They are.
+    /// All pairs of candidates are screened.
     Screened,
     /// Not where all data supported a single effect at most: a part of them supports no more.
     LeftOut,

@@ -153,7 +153,7 @@ pub(super) fn corrections(calibration: &Calibration) -> Figure {
                 let correction = (estimate.value - estimate.nominal) / unit;
                 let half = estimate.std_error.map(|error| INTERVAL * error / unit);
                 ParameterCorrection {
-                    name: estimate.parameter.words(),
+                    name: estimate.parameter.description(),
                     correction,
                     interval: half.map(|half| [correction - half, correction + half]),
                     note: String::new(),

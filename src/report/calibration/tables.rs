@@ -101,7 +101,7 @@ pub(super) fn parameters(calibration: &Calibration) -> Table {
         let decimals = error.and_then(decimals_of).unwrap_or(DECIMALS);
         let show = |value: f64| fixed(value / unit.si, decimals);
         table.row([
-            estimate.parameter.words(),
+            estimate.parameter.description(),
             unit.symbol.to_owned(),
             show(estimate.nominal),
             show(estimate.value),
@@ -183,7 +183,7 @@ pub(super) fn correlations(calibration: &Calibration, limit: f64) -> Block {
         vec![Column::text("parameter"), Column::text("with"), Column::number("correlation", "")],
     );
     for (a, b, value) in pairs.iter().take(MOST) {
-        table.row([a.words(), b.words(), format!("{value:.3}")]);
+        table.row([a.description(), b.description(), format!("{value:.3}")]);
     }
     if pairs.len() > MOST {
         table.notes.push(format!("and {} more", pairs.len() - MOST));

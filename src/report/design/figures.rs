@@ -25,7 +25,7 @@ pub fn front(study: &Study) -> Option<Figure> {
     let (name, more) = match panels.len() {
         0 => return None,
         1 => (others, ""),
-        _ => (others, " Designs that seem bettered in one panel are better in another goal."),
+        _ => (others, " A design that looks worse in one panel is better in another goal."),
     };
     Some(Figure {
         name: "front".into(),

@@ -46,7 +46,7 @@ pub fn section(study: &Study, found: &Refined) -> Section {
     }));
     let word = goal_words(study, found);
     let caption = format!(
-        "From design {}: {word} is bettered, no other goal loses, all limits are kept. Ranges of the design file and \
+        "From design {}: {word} is improved, no other goal becomes worse, all limits are kept. Ranges of the design file and \
          sizes of tubes may take any value between their ends; then {} of the catalogue are tried.",
         found.place + 1,
         if found.is_every_tube { "all tubes" } else { "the nearest tubes" }
@@ -77,7 +77,7 @@ pub fn section(study: &Study, found: &Refined) -> Section {
     let gained = |better: &Better| format!("{} %", significant(100.0 * better.gained, 2));
     let said = match (&found.continuous, &found.catalogue) {
         (None, _) => {
-            format!("Nothing is gained: no rod was found that betters {word} without a loss elsewhere.")
+            format!("Nothing is gained: no rod was found that improves {word} and makes no other goal worse.")
         }
         (Some(any), Some(bought)) => format!(
             "{word} becomes {} better with tubes of the catalogue, {} if tubes of any size could be had.",

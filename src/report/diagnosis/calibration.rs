@@ -89,7 +89,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
     let campaign = model.campaign;
     let distances = Distances::of(found);
     let (before, after) = (mean(&distances.before), mean(&distances.after));
-    let proof =
+    let held_out =
         vec![Block::Table(distances.table()), Block::Figure(figures::distribution(found, &distances))];
     Subject {
         evidence: &found.evidence,
@@ -153,7 +153,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
             .chain([figures::vectors(found)])
             .map(Block::Figure)
             .collect(),
-        proof,
+        held_out,
         consequences: None,
         count: campaign.measurements.len(),
     }

@@ -3,7 +3,7 @@
 use super::subject::Subject;
 use crate::diagnosis::Limitation;
 use crate::inference::{Diagnosis, Finding, Kind, Location, WrittenTo};
-use crate::units::{UM, significant};
+use crate::units::{MM, UM, significant};
 
 /// So many findings are said in full; more are named.
 const IN_FULL: usize = 2;
@@ -132,7 +132,7 @@ fn beginning_lower(words: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }
 
-fn capital(words: &str) -> String {
+pub fn capital(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
@@ -151,17 +151,16 @@ fn worth(subject: &Subject) -> String {
         subject.diagnosis.findings.iter().partition(|finding| finding.kind() == Kind::Mistake);
     if findings.is_empty() {
         let it = if mistakes.len() > 1 { "they are" } else { "it is" };
-        let (before, after) = (um(errors.before), um(errors.after));
+        let (before, after) = (size(errors.before), size(errors.after));
         if !mistakes.iter().any(|mistake| is_undone(mistake)) {
             return format!(" Until {it} corrected, these {} say nothing else.", subject.noun);
         }
         return match errors.after < errors.before && before != after {
             true => {
-                format!(
-                    " Once {it} corrected, the residual falls from {before} to {after} µm{averaged}; {scatter}"
-                )
+                let falls = from_to(errors.before, errors.after);
+                format!(" Once {it} corrected, the residual falls {falls}{averaged}; {scatter}")
             }
-            false => format!(" Once {it} corrected, the residual is {after} µm{averaged}; {scatter}"),
+            false => format!(" Once {it} corrected, the residual is {after}{averaged}; {scatter}"),
         };
     }
     // with mistakes, what was held out is that of the corrected recording
@@ -174,28 +173,25 @@ fn worth(subject: &Subject) -> String {
     // this error is that of the readings as they were recorded
     let correction = if mistakes.is_empty() { "" } else { "the correction and " };
     let fitted = |why: &str| {
-        let (before, after) = (um(errors.before), um(errors.after));
-        format!(
-            " With {correction}{it}, the error falls from {before} to {after} µm{averaged}{why}; {scatter}"
-        )
+        let falls = from_to(errors.before, errors.after);
+        format!(" With {correction}{it}, the error falls {falls}{averaged}{why}; {scatter}")
     };
     // a single event says nothing about data that were held out
     let are_events = findings.iter().all(|finding| finding.kind() == Kind::Event);
     match errors.held_out {
         _ if are_events => fitted(""),
         Some((before, after)) if um(after) != um(before) && after < before => format!(
-            " With {it}, the held-out error falls from {} to {} µm{averaged}{}; {scatter}",
-            um(before),
-            um(after),
+            " With {it}, the held-out error falls {}{averaged}{}; {scatter}",
+            from_to(before, after),
             only_in_part(subject, it, (before, after))
         ),
         // said before all else
         Some(_) if mistakes.is_empty() => format!(" {}", capital(&scatter)),
         Some((before, after)) => format!(
-            " Held-out {} do not confirm {it}: their error is {} µm before and {} µm after{averaged}.",
+            " Held-out {} do not confirm {it}: their error is {} before and {} after{averaged}.",
             subject.noun,
-            um(before),
-            um(after)
+            size(before),
+            size(after)
         ),
         None => fitted(" (nothing could be held out)"),
     }
@@ -216,10 +212,10 @@ fn unconfirmed(subject: &Subject) -> Option<String> {
     }
     let it = if findings.len() == 1 { "this" } else { "these" };
     Some(format!(
-        "Possible, but held-out {} do not confirm {it} (their error is {} µm before and {} µm after{}):",
+        "Possible, but held-out {} do not confirm {it} (their error is {} before and {} after{}):",
         subject.noun,
-        um(before),
-        um(after),
+        size(before),
+        size(after),
         subject.errors.averaged
     ))
 }
@@ -277,6 +273,23 @@ pub fn cause_at(finding: &Finding) -> String {
     (finding.effect.cause_at)(&finding.location)
 }
 
+/// A length with its unit: µm below a millimetre, else mm.
+pub fn size(length: f64) -> String {
+    match length.abs() < MM {
+        true => format!("{} µm", um(length)),
+        false => format!("{} mm", significant(length / MM, 3)),
+    }
+}
+
+/// How an error falls: `from 109 to 51 µm`, `from 331 mm to 23 µm`.
+fn from_to(before: f64, after: f64) -> String {
+    let (first, last) = (size(before), size(after));
+    match (first.split_once(' '), last.split_once(' ')) {
+        (Some((number, unit)), Some((_, same))) if unit == same => format!("from {number} to {last}"),
+        _ => format!("from {first} to {last}"),
+    }
+}
+
 /// A length in µm with as many digits as are read.
 pub fn um(length: f64) -> String {
     significant(length / UM, if length.abs() < 0.995e-4 { 2 } else { 3 })
@@ -286,6 +299,13 @@ pub fn um(length: f64) -> String {
 mod tests {
     use super::*;
     use crate::inference::{Description, Rival, UNKNOWN};
+
+    #[test]
+    fn large_errors_are_said_in_millimetres() {
+        assert_eq!(from_to(109e-6, 51e-6), "from 109 to 51 µm");
+        assert_eq!(from_to(0.330972, 23e-6), "from 331 mm to 23 µm");
+        assert_eq!(from_to(0.330972, 5.21e-3), "from 331 to 5.21 mm");
+    }
 
     #[test]
     fn the_first_sentence_says_which_other_clamp_it_may_be() {

@@ -113,7 +113,7 @@ fn of_finding(subject: &Subject, index: usize, finding: &Finding) -> Value {
         "indistinguishable_from": others,
         "places": places,
         "rivals": finding.rivals.iter().map(rival).collect::<Vec<_>>(),
-        "next_measurement": next.map(|next| &next.words),
+        "next_measurement": next.map(|next| &next.description),
         "next_measurement_plan": plan,
         "heldout_gain": subject.diagnosis.held_out.as_ref().map(|held_out| held_out.gain),
         "heldout_loss": finding.held_out_loss,

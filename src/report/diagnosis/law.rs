@@ -222,7 +222,7 @@ fn alternatives(law: &Law, subject: &LawSubject) -> Option<String> {
     Some(format!("It may as well be: {}{more}. These {these} cannot distinguish them.", said.join("; or ")))
 }
 
-/// What would.
+/// The measurement that would distinguish a law from its rivals, in a sentence.
 fn next(law: &Law) -> Option<String> {
     let next = law.next?;
     let variable = &law.site.variable;
@@ -239,7 +239,10 @@ fn next(law: &Law) -> Option<String> {
 
 fn range(law: &Law, subject: &LawSubject, note: &LawNote) -> String {
     let ((low, high), variable) = (law.site.range(), &law.site.variable);
-    let show = |value: f64| significant(value / variable.si, 3);
+    let show = |value: f64, digits: usize| {
+        let sign = if value < 0.0 { "−" } else { "" };
+        format!("{sign}{}", significant(value.abs() / variable.si, digits))
+    };
     let written = match note.written_to {
         WrittenTo::Model => "; --apply writes it".to_owned(),
         WrittenTo::Recording => format!(
@@ -250,7 +253,7 @@ fn range(law: &Law, subject: &LawSubject, note: &LawNote) -> String {
     };
     let beyond =
         law.further.filter(|(_, apart)| *apart > law.noise).map_or_else(String::new, |(at, apart)| {
-            let at = with_unit(significant(at / variable.si, 2), variable.unit);
+            let at = with_unit(show(at, 2), variable.unit);
             format!(
                 ": at {at} these {} leave up to {} µm open, so do not use it there",
                 subject.noun,
@@ -260,8 +263,8 @@ fn range(law: &Law, subject: &LawSubject, note: &LawNote) -> String {
     format!(
         "It is a proposal from {} between {} and {}; beyond that it is an extrapolation{beyond}. It changes no finding{written}.",
         subject.noun,
-        show(low),
-        with_unit(show(high), variable.unit)
+        show(low, 3),
+        with_unit(show(high, 3), variable.unit)
     )
 }
 

@@ -102,7 +102,7 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
         }),
         source: readings.source.clone(),
         places: std::iter::once(Block::Figure(figures::residuals(found))).chain(places).collect(),
-        proof: loads_in_newtons(found).map(Block::Paragraph).into_iter().collect(),
+        held_out: loads_in_newtons(found).map(Block::Paragraph).into_iter().collect(),
         consequences: correction.map(correction::section),
         count: model.data().len(),
     }

@@ -1,17 +1,17 @@
 //! The body of a diagnosis' report, of a rig or of a calibration.
 
-use super::headline::{RIVALS_SAID, is_scatter_estimated, is_undone, sentence, um};
+use super::headline::{RIVALS_SAID, capital, cause_at, is_scatter_estimated, is_undone, sentence, size, um};
 use super::hidden::hidden;
 use super::law;
 use super::subject::Subject;
-use super::tables::{alternatives, evidence, locate, named, parameters, proof, replication};
+use super::tables::{alternatives, evidence, held_out_section, locate, named, parameters, replication};
 use crate::inference::{Finding, Kind};
 use crate::report::{Block, Section};
 
 pub fn all(subject: &mut Subject) -> Vec<Section> {
     let mut sections = vec![findings(subject), location(subject)];
-    let mut helps = proof(subject);
-    helps.blocks.extend(std::mem::take(&mut subject.proof));
+    let mut helps = held_out_section(subject);
+    helps.blocks.extend(std::mem::take(&mut subject.held_out));
     if !subject.diagnosis.sessions.is_empty() {
         helps.blocks.push(Block::Table(replication(subject)));
     }
@@ -39,8 +39,13 @@ fn findings(subject: &Subject) -> Section {
     let points = findings.iter().enumerate().map(|(k, finding)| {
         let next = finding.next.as_ref();
         let purpose = if finding.rivals.is_empty() { "check it" } else { "distinguish them" };
-        let next = next.map_or_else(String::new, |next| format!(" To {purpose}: {}", next.words));
-        format!("{} {}{next}", sentence(subject, finding), details(subject, k, finding))
+        let next = next.map_or_else(String::new, |next| format!(" To {purpose}: {}", next.description));
+        // what nothing can undo is said in full above, and no number says more
+        let said = match is_undone(finding) {
+            true => sentence(subject, finding),
+            false => format!("{}.", capital(&cause_at(finding))),
+        };
+        format!("{said} {}{next}", details(subject, k, finding))
     });
     blocks.push(Block::List(points.collect()));
     blocks.push(Block::Table(parameters(findings)));
@@ -56,9 +61,9 @@ fn whose(subject: &Subject) -> String {
 fn details(subject: &Subject, index: usize, finding: &Finding) -> String {
     let whose = whose(subject);
     if !is_undone(finding) {
-        return "Without the right numbers nobody knows how much of the residual it is.".into();
+        return "How much of the residual it explains can be computed from correct numbers only.".into();
     }
-    let mut words = format!("It explains {} µm rms{whose}{}", um(finding.explains), subject.per);
+    let mut words = format!("It explains {} rms{whose}{}", size(finding.explains), subject.per);
     if let Some((some, all)) = finding.found_in_folds {
         words += &format!(", and is found in {some} of {all} searches that leave a part of them out");
     }

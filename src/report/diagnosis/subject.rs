@@ -67,7 +67,7 @@ pub struct Subject<'a> {
     /// Where the mismatch lives: pictures.
     pub places: Vec<Block>,
     /// Does it help: more tables and pictures.
-    pub proof: Vec<Block>,
+    pub held_out: Vec<Block>,
     /// What is written back to the model.
     pub consequences: Option<Section>,
     /// Number of rows or readings.

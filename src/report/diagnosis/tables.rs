@@ -183,7 +183,7 @@ fn word(z: f64) -> &'static str {
 }
 
 /// Errors before and after, held-out ones included.
-pub fn proof(subject: &Subject) -> Section {
+pub fn held_out_section(subject: &Subject) -> Section {
     let (noun, diagnosis) = (subject.noun, subject.diagnosis);
     let mut table = Table::new(
         "errors",
@@ -226,14 +226,14 @@ pub fn proof(subject: &Subject) -> Section {
         test(&diagnosis.lack_of_fit_after),
     );
     let mut blocks = Vec::new();
-    if let Some(proof) = &diagnosis.held_out {
-        let interval = proof.gain_interval.map_or_else(String::new, |(low, high)| {
+    if let Some(errors) = &diagnosis.held_out {
+        let interval = errors.gain_interval.map_or_else(String::new, |(low, high)| {
             format!(" (95 % interval {} to {} %)", percent(low), percent(high))
         });
-        let words = format!("The squared held-out error falls by {} %{interval}.", percent(proof.gain));
+        let words = format!("The squared held-out error falls by {} %{interval}.", percent(errors.gain));
         if !diagnosis.findings.is_empty() {
             blocks.push(Block::Paragraph(words));
-            blocks.push(Block::Figure(proof_picture((noun, subject.per), proof, diagnosis.noise)));
+            blocks.push(Block::Figure(held_out_picture((noun, subject.per), errors, diagnosis.noise)));
         }
     }
     blocks.push(Block::Table(table));
@@ -322,22 +322,22 @@ pub fn replication(subject: &Subject) -> Table {
 }
 
 /// What held-out data say.
-fn proof_picture((noun, per): (&str, &str), proof: &HeldOutErrors, noise: f64) -> Figure {
+fn held_out_picture((noun, per): (&str, &str), errors: &HeldOutErrors, noise: f64) -> Figure {
     // after² = before²·(1 − gain)
-    let after = |gain: f64| proof.before * (1.0 - gain).max(0.0).sqrt() / UM;
+    let after = |gain: f64| errors.before * (1.0 - gain).max(0.0).sqrt() / UM;
     held_out(
         (noun, per),
         &HeldOut {
-            before_um: proof.before / UM,
-            after_um: proof.after / UM,
-            after_95_um: proof.gain_interval.map(|(low, high)| (after(high), after(low))),
+            before_um: errors.before / UM,
+            after_um: errors.after / UM,
+            after_95_um: errors.gain_interval.map(|(low, high)| (after(high), after(low))),
             noise_um: noise / UM,
         },
     )
     .captioned(format!(
         "Error of held-out {noun}, root mean square{per}: {} µm before, {} µm after. No model predicts better than the \
          scatter.",
-        um(proof.before),
-        um(proof.after)
+        um(errors.before),
+        um(errors.after)
     ))
 }

@@ -86,15 +86,15 @@ pub enum Part {
 /// A constant of a [`crate::section::General`] section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SectionConstant {
-    /// A.
+    /// Area A of the section.
     Area,
-    /// I_y.
+    /// Second moment I_y of the section.
     Iy,
-    /// I_z.
+    /// Second moment I_z of the section.
     Iz,
-    /// J.
+    /// Torsion constant J.
     TorsionConstant,
-    /// κ.
+    /// Shear coefficient κ, dimensionless.
     ShearCoefficient,
 }
 
@@ -107,7 +107,7 @@ pub enum Feature {
     Mass(String),
     /// The beginning of the sleeve of this number, in the order of the rod file, from 0.
     SleeveFrom(usize),
-    /// Its end.
+    /// The end of the sleeve of this number, likewise.
     SleeveTo(usize),
 }
 

@@ -63,7 +63,7 @@ impl InverseRoot {
         DVector::from_fn(n, |k, _| self.x.column(k).rows(k, n - k).norm_squared())
     }
 
-    /// A⁻¹.
+    /// Inverse A⁻¹, n × n.
     pub fn inverse(&self) -> DMatrix<f64> {
         let n = self.x.ncols();
         let mut inverse = DMatrix::zeros(n, n);

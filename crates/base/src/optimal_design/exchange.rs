@@ -27,9 +27,9 @@ const MOST_PASSES: usize = 20;
 /// add to it.
 struct State<'a> {
     all: &'a Measurements,
-    /// W.
+    /// Weight W of the criterion, where it has one.
     weight: Option<&'a DMatrix<f64>>,
-    /// P.
+    /// Inverse P of the information matrix.
     inverse: DMatrix<f64>,
     /// The measurements of the group with their JPJᵀ and J·PWP·Jᵀ.
     group: Vec<Known>,

@@ -21,7 +21,7 @@ pub fn bartlett(variances_with_dof: &[(f64, f64)]) -> Result<f64> {
     chi_squared_survival(statistic(variances_with_dof)?, variances_with_dof.len() as f64 - 1.0)
 }
 
-/// T.
+/// Bartlett's statistic T of the groups' degrees of freedom and variances.
 fn statistic(groups: &[(f64, f64)]) -> Result<f64> {
     let refused = |found: String, expected: &str| {
         Err(Error::Argument { name: "variances_with_dof", found, expected: expected.into() })

@@ -16,7 +16,7 @@ use rodcal_base::units::{DEG, MM};
 /// Poses that are proposed, in the words of a diagnosis' JSON.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Proposed {
-    /// In their order.
+    /// The poses, in the order in which they are measured.
     pub poses: Vec<ProposedPose>,
     /// A clamp to be set up for some of them.
     pub new_fixture: Option<NewClamp>,
@@ -33,7 +33,7 @@ pub struct ProposedPose {
 
 /// Where the clamp is to stand, in the world.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "the names are those of the JSON, with units")]
 pub struct NewClamp {
     pub name: String,
     pub xyz_mm: [f64; 3],

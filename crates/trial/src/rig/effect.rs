@@ -7,7 +7,7 @@ use rodcal_base::units::{DEG, MM, UM, URAD_PER_NM};
 
 /// Something that is wrong, SI.
 #[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)] // fields are in the words of their effects
+#[allow(missing_docs, reason = "fields are in the words of their effects")]
 pub enum Effect {
     /// Factor on E and G.
     StiffnessScale(f64),

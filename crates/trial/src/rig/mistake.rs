@@ -15,7 +15,7 @@ use rodcal_base::units::{STANDARD_GRAVITY, UM};
 
 /// What is written wrongly; factors are true over written.
 #[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)] // fields are in the words of their mistakes
+#[allow(missing_docs, reason = "fields are in the words of their mistakes")]
 pub enum Mistake {
     /// Loads in another unit.
     Loads { factor: f64 },

@@ -54,7 +54,7 @@ pub fn steps(loads: &[f64], has_unloading: bool) -> Vec<Step> {
 
 /// What the loadings of one run along one way of an axis have in common; as in [`Loading`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "its fields are those of a loading")]
 pub struct Run {
     pub axis: usize,
     pub sign: f64,
@@ -95,7 +95,7 @@ pub struct Protocol {
 
 /// The optional columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "the names are those of the columns")]
 pub struct Columns {
     pub trial: bool,
     pub phase: bool,

@@ -8,7 +8,7 @@ const POISSON: (f64, f64) = (0.0, 0.5);
 
 /// How well the numbers of a rod file are known, 1 σ: relative, or m.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "the names are those of the keys; units stand above")]
 pub struct Uncertainty {
     pub youngs_modulus: f64,
     pub shear_modulus: f64,

@@ -66,9 +66,9 @@ pub struct Part {
     pub coverage: Coverage,
     /// Gain of held-out errors over what an oracle gains, identifiable cases together.
     pub gain_over_oracle: Option<f64>,
-    /// Readings that were asked for and not given: the median of `counterfactual`, and all of it.
+    /// Readings that were asked for and not given: the median of `counterfactual`.
     pub counterfactual_over_oracle: Option<f64>,
-    #[allow(missing_docs)]
+    /// Errors of these predictions over those of the oracle.
     pub counterfactual: Predictions,
     /// What the proposals of ambiguous answers led to.
     pub next_measurement_ok: NextMeasurement,

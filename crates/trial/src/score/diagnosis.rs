@@ -33,8 +33,8 @@ pub struct Finding {
     /// Where, for people, and as data.
     #[serde(default)]
     pub location: String,
+    /// The same place, as the key compares it.
     #[serde(default)]
-    #[allow(missing_docs)]
     pub place: Option<Place>,
     /// Its numbers.
     #[serde(default)]
@@ -45,11 +45,11 @@ pub struct Finding {
     /// What might stand in its place, and where.
     #[serde(default)]
     pub rivals: Vec<Rival>,
-    /// What would decide, in words and as numbers.
+    /// What would decide, in a sentence.
     #[serde(default)]
     pub next_measurement: Option<String>,
+    /// The same as numbers.
     #[serde(default)]
-    #[allow(missing_docs)]
     pub next_measurement_plan: Option<Value>,
 }
 
@@ -72,14 +72,14 @@ pub enum FindingKind {
 pub struct Rival {
     /// Name of the effect.
     pub effect: EffectName,
-    /// Where.
+    /// The place at which it would act.
     #[serde(default)]
     pub place: Option<Place>,
 }
 
 /// A number with its 95 % interval; an end that JSON has no number for is at infinity.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "the names are those of the JSON of an answer")]
 pub struct Interval {
     pub name: String,
     #[serde(deserialize_with = "below")]

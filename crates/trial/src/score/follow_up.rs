@@ -179,7 +179,7 @@ pub struct Open {
 
 /// Name and place of a finding, and what it may be as well.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[allow(missing_docs)]
+#[allow(missing_docs, reason = "the names are those of the JSON of an answer")]
 pub struct FindingSummary {
     pub effect: EffectName,
     pub location: String,

@@ -18,9 +18,9 @@ pub struct Predictions {
     pub n: usize,
     /// Those that were answered.
     pub answered: usize,
-    /// Of the ratios of errors; `None` of no case.
+    /// Median of the ratios of errors; `None` of no case.
     pub median: Option<f64>,
-    #[allow(missing_docs)]
+    /// Lower and upper quartile of the same.
     pub quartiles: [Option<f64>; 2],
     /// Median of the answers' errors over the noise.
     pub answer_over_noise_median: Option<f64>,

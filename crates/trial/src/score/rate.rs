@@ -11,9 +11,9 @@ const Z: f64 = 1.959_964;
 /// So many of so many.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Rate {
-    /// How many.
+    /// Cases of which it is so.
     pub count: usize,
-    /// Of how many.
+    /// Cases that were counted.
     pub total: usize,
 }
 

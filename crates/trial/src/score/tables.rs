@@ -28,9 +28,9 @@ fn limits(edges: &[f64], bin: usize) -> [Option<f64>; 2] {
 /// Cases with one effect whose detectability is in a bin.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Bin {
-    /// Edges, expected log Bayes factor of the oracle; the outer bins have one.
+    /// Lower edge, expected log Bayes factor of the oracle; `None` for the lowest bin.
     pub from: Option<f64>,
-    #[allow(missing_docs)]
+    /// Upper edge; `None` for the highest bin.
     pub to: Option<f64>,
     /// Cases in it.
     pub n: usize,
@@ -38,7 +38,7 @@ pub struct Bin {
     pub name_ok: usize,
     /// The name and the place.
     pub location_ok: usize,
-    #[allow(missing_docs)]
+    /// The same over all cases of the bin.
     pub location_ok_rate: Rate,
     /// The truth was in the reported class.
     pub in_class: usize,
@@ -77,15 +77,15 @@ pub fn bins(cases: &[ScoredCase<'_>]) -> Vec<Bin> {
 /// Cases with one effect of a name whose size over noise is in a bin.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PowerBin {
-    /// Edges, size over noise; the outer bins have one.
+    /// Lower edge, size over noise; `None` for the lowest bin.
     pub from: Option<f64>,
-    #[allow(missing_docs)]
+    /// Upper edge; `None` for the highest bin.
     pub to: Option<f64>,
     /// Cases in it.
     pub n: usize,
     /// Of those: the name was right.
     pub name_ok: usize,
-    #[allow(missing_docs)]
+    /// The same over all cases of the bin.
     pub name_ok_rate: Rate,
 }
 

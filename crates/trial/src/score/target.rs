@@ -31,9 +31,9 @@ impl Measured {
 pub struct Target {
     /// What it counts.
     pub what: &'static str,
-    /// Least and most, both inclusive.
+    /// Least that reaches it.
     pub from: f64,
-    #[allow(missing_docs)]
+    /// Most that reaches it.
     pub to: f64,
 }
 
@@ -42,7 +42,7 @@ pub struct Target {
 pub struct Reached {
     /// What was to be reached.
     pub target: &'static Target,
-    /// What was.
+    /// What the score has of it.
     pub measured: Measured,
 }
 
@@ -51,7 +51,7 @@ pub struct Reached {
 pub struct Missed {
     /// What was to be reached.
     pub target: &'static Target,
-    /// What was.
+    /// The share that was reached.
     pub share: f64,
 }
 

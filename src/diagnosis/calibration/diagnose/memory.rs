@@ -40,6 +40,17 @@ pub fn memory_needed(poses: usize, joints: usize) -> f64 {
 
 /// Refuses what needs too much.
 ///
+/// ```
+/// use rodcal::diagnosis::calibration::check_memory;
+/// use rodcal::prelude::*;
+///
+/// let mut campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// check_memory(&campaign)?; // 60 poses
+/// campaign.measurements = campaign.measurements.subset(&vec![0; 30_000]);
+/// assert!(check_memory(&campaign).is_err());
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::NotApplicable`] where a diagnosis would need more than [`MEMORY_LIMIT`].
 pub fn check_memory(campaign: &Campaign) -> Result<()> {

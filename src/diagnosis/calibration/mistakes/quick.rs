@@ -69,7 +69,7 @@ pub(super) struct Worthwhile {
 }
 
 impl Worthwhile {
-    /// Any is.
+    /// Every draft is worthwhile, whatever it leaves.
     pub const ANY: Worthwhile = Worthwhile { most_left: f64::INFINITY, log_likelihood: f64::NEG_INFINITY };
 }
 

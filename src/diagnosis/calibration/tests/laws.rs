@@ -50,7 +50,7 @@ fn a_cable_that_pulls_with_two_joints_is_a_product() {
     });
 }
 
-/// A hose that is taut from one posture of two joints on.
+/// A hose that is taut from one configuration of two joints on.
 #[test]
 fn a_hose_that_gets_taut_is_a_threshold() {
     let pull = |there: &Configuration| {

@@ -21,7 +21,7 @@ fn one_clamp_more_tells_which_of_a_few_is_misplaced() {
     assert_eq!(first.effect.name, "clamp_pose");
     assert!(first.others().iter().any(|(effect, _)| effect.name == "clamp_pose"));
     let next = first.next.as_ref().unwrap();
-    assert!(next.words.contains("et up one more clamp where clamp "), "{}", next.words);
+    assert!(next.description.contains("et up one more clamp where clamp "), "{}", next.description);
     assert!(next.log_odds > 3.0);
     assert!(next.separates_from.iter().any(|(effect, _)| effect.name == "clamp_pose"));
     let Some(NextPlan::Poses(plan)) = &next.plan else { panic!("no poses") };

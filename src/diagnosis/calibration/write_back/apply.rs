@@ -63,6 +63,25 @@ fn beside(law: Option<&Law>, finding: &Finding) -> Finding {
 /// Robot and campaign with what `found` says; `None` where nothing of it could be written. `names`
 /// are those of the campaign's files; the comments `above` stand on top of them.
 ///
+/// ```
+/// use rodcal::calibration::campaign::FileNames;
+/// use rodcal::diagnosis::calibration::{apply, diagnose_as_recorded};
+/// use rodcal::prelude::*;
+///
+/// // a clamp that stands 0.5 mm beside where the file says
+/// let mut campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
+/// let groups: Vec<usize> = campaign.measurements.rows.iter().map(|row| row.group).collect();
+/// let Targets::Points(points) = &mut campaign.measurements.targets else { unreachable!() };
+/// points.iter_mut().zip(groups).filter(|(_, group)| *group == 2).for_each(|(point, _)| point.x += 0.5e-3);
+/// let found = diagnose_as_recorded(&campaign, Mode::Meas, &Options::default())?;
+/// assert_eq!(found.diagnosis.findings[0].effect.name, "clamp_pose");
+/// let names = FileNames::new("builtin:tx90", "measurements.csv");
+/// let applied = apply(&found, &names, &[])?.expect("a clamp's pose can be corrected");
+/// assert_eq!(applied.removed.len(), 1);
+/// assert!(applied.mean < 60e-6, "{}", applied.mean);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
+///
 /// # Errors
 /// As [`calibrate`] and [`crate::calibration::write_back`].
 pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) -> Result<Option<Applied>> {

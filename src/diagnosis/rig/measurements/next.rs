@@ -57,7 +57,7 @@ pub fn next_measurement(
     Ok(design.best().map(|(measurement, separations)| {
         let separated = || rivals.iter().zip(&separations).filter(|(_, apart)| separates(**apart));
         Proposal {
-            words: measurement.description(),
+            description: measurement.description(),
             plan: Some(Plan::Loads(measurement.plan)),
             log_odds: separated().map(|(_, apart)| *apart).fold(f64::INFINITY, f64::min),
             separates_from: separated().map(|(rival, _)| (rival.effect, rival.location.clone())).collect(),

@@ -49,11 +49,25 @@ const MOST_PLANS: usize = 1000;
 const WORTH: f64 = 0.98;
 
 /// The effect of a rig that has this name.
+///
+/// ```
+/// use rodcal::diagnosis::rig::planned::effect_named;
+///
+/// let friction = effect_named("friction").expect("the library knows it");
+/// assert_eq!(friction.name, "friction");
+/// assert!(effect_named("ghost").is_none());
+/// ```
 pub fn effect_named(name: &str) -> Option<&'static Effect> {
     registry::ALL.into_iter().map(|effect| &effect.effect).find(|effect| effect.name == name)
 }
 
 /// Names of all effects of a rig.
+///
+/// ```
+/// use rodcal::diagnosis::rig::planned::effect_names;
+///
+/// assert!(effect_names().len() > 15 && effect_names().contains(&"root_compliance"));
+/// ```
 pub fn effect_names() -> Vec<&'static str> {
     registry::ALL.into_iter().map(|effect| effect.effect.name).collect()
 }
@@ -62,6 +76,19 @@ pub fn effect_names() -> Vec<&'static str> {
 /// nothing; as far as the rig can do that with reasonable effort: where all measurements together
 /// tell less than odds², nearly all of them would be needed. Where few plans take less effort, all
 /// of them are looked at, and it is the least laborious one ([`RigPlan::is_least`]).
+///
+/// ```
+/// use rodcal::diagnosis::rig::planned::{Bench, effect_named, plan};
+/// use rodcal::prelude::*;
+///
+/// let rod = Rod::read("rods/5.toml".as_ref())?;
+/// let bench = Bench { largest_load: 10.0, noise: 2e-6, is_at_tip: true };
+/// let friction = effect_named("friction").expect("the library knows it");
+/// let plan = plan(&rod, &[friction], 20.0, &bench)?;
+/// assert!((plan.wanted - 20f64.ln()).abs() < 1e-12);
+/// assert!(!plan.measurements.is_empty() && plan.minutes > 0.0);
+/// # Ok::<(), rodcal::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`crate::Error::NotApplicable`] for an effect that no such measurement shows; what the beam

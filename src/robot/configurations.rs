@@ -1,11 +1,11 @@
-//! Postures at random, and those that bring the tip to a point.
+//! Configurations at random, and those that bring the tip to a point.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Kinematics, Motion, Robot};
 use crate::statistics::Random;
 
-/// Steps towards a point before a posture counts as unable to get there.
+/// Steps towards a point before a configuration counts as unable to get there.
 const MOST_STEPS: usize = 25;
 /// Distance from the point at which the tip has arrived, m, and at which no more steps are needed.
 const ARRIVED: f64 = 1e-5;

@@ -7,12 +7,13 @@ use super::super::effects::fixture::CLAMP_POSE;
 use super::super::effects::loads::TIP_MASS;
 use super::super::effects::mistakes::FRAME_MISTAKE;
 use super::super::effects::mounting::{BASE_SHIFT, TOOL_SHIFT};
+use super::Mended;
 use super::draft::DraftChange;
 use super::motion::{motion_estimates, moved};
 use super::names::{place, pose_name};
 use super::search::{AdoptedStep, FittedDraft, MistakeSearch, SearchStep};
 use super::slips::Slip;
-use super::{Mended, Suspicion};
+use crate::diagnosis::Suspicion;
 use crate::inference::{Description, Effect, Estimate, Finding, Location, Part, Rival, WrittenTo};
 use crate::units::{DEG, MM, significant};
 
@@ -28,9 +29,7 @@ impl Mended {
         log_odds: f64,
     ) {
         let lower = lower(cure);
-        let description =
-            format!("likely mistake in {location}: {why}; {lower} (`rodcal diagnose calibration` says more)");
-        self.suspicions.push(Suspicion { description, spoils_fit: true });
+        self.suspicions.push(Suspicion::new(format!("likely mistake in {location}: {why}; {lower}")));
         let observed = Description { observed: cure.to_owned(), cause: why.to_owned() };
         let p_value = (-log_odds).exp();
         self.found.push(Finding { p_value, ..Finding::without_terms(effect, location, estimates, observed) });

@@ -79,13 +79,8 @@ fn findings_said(difference: &Difference) -> Option<String> {
 
 /// The error that counts: at poses or readings that the fit has not seen, where there are some.
 fn main_error(difference: &Difference) -> Option<&Change> {
-    let both = || difference.errors.iter().filter(|change| change.difference.is_some());
-    let unseen =
-        |start: &str| both().find(|change| change.name.starts_with(start) && change.name.ends_with("mean"));
-    unseen("error at validation poses")
-        .or_else(|| unseen("error at held-out poses"))
-        .or_else(|| both().find(|change| change.name == "held-out rms with findings"))
-        .or_else(|| both().next())
+    let both = difference.errors.iter().filter(|change| change.difference.is_some());
+    both.min_by_key(|change| change.precedence)
 }
 
 fn cards(runs: &Runs, other: &Run, difference: &Difference) -> Vec<Card> {

@@ -18,7 +18,15 @@ pub(super) fn per_torque(model: &CalibrationModel, parts: &[FindingPart]) -> Vec
         let power = match model.law(part.term.candidate) {
             Law::Nonlinear(TorquePower::Cube) => 3.0,
             Law::Nonlinear(TorquePower::Square) => 2.0,
-            _ => 1.0,
+            Law::Only
+            | Law::Gear(_)
+            | Law::Play(_)
+            | Law::MassesUnknown(_)
+            | Law::Rod(_)
+            | Law::Hung(_)
+            | Law::Drift(..)
+            | Law::Warms(..)
+            | Law::Moved(_) => 1.0,
         };
         let relative = known.of(part.location.joint());
         let wider = |estimate: &Estimate| {

@@ -54,12 +54,34 @@ impl RigModel {
     }
 
     fn of_joint(&self, action: &Action) -> Option<OfJoint> {
-        match (action, &self.body) {
-            (Action::Station(_), _) => Some(OfJoint::Station),
-            (Action::Joint(number, _), Body::Rod(structure)) => {
-                Some(OfJoint::Compliance(structure.deformation(*number)))
-            }
-            _ => None,
+        match action {
+            Action::Station(_) => Some(OfJoint::Station),
+            Action::Joint(number, _) => match &self.body {
+                Body::Rod(structure) => Some(OfJoint::Compliance(structure.deformation(*number))),
+                Body::Lines(_) => None,
+            },
+            Action::Friction(_)
+            | Action::Presliding
+            | Action::SliderPlay
+            | Action::LoadOffset(_)
+            | Action::TurnLoad(..)
+            | Action::Stiffness
+            | Action::ShearModulus
+            | Action::Bend(_)
+            | Action::JointIn(..)
+            | Action::PerLoadSquared
+            | Action::PerLoad
+            | Action::Memory(..)
+            | Action::Onset(_)
+            | Action::SensorScale(_)
+            | Action::TurnSensor(..)
+            | Action::TurnSensors(..)
+            | Action::Play(_)
+            | Action::Display(_)
+            | Action::Shift(_)
+            | Action::Drift(..)
+            | Action::Step(..)
+            | Action::Own(..) => None,
         }
     }
 }

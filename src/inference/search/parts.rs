@@ -79,7 +79,7 @@ pub fn part(
             let odds = (hypothesis.log_probability - other.log_probability).exp() * factor;
             let own = other.terms.last()?.clone();
             let (effect, location) = (candidates[index].effect, model.location(&own));
-            Some(Rival { effect, location, term: own, hypothesis: other, odds })
+            Some(Rival { effect, location, term: Some(own), hypothesis: other, odds })
         })
         .filter(|rival| rival.odds < APART)
         .collect();
@@ -88,8 +88,9 @@ pub fn part(
     let is_along = |location: &Location| matches!(location, Location::Named(_) | Location::Station(_));
     for rival in rivals.iter().filter(|rival| rival.effect == own && is_along(&rival.location)) {
         if is_along(&candidates[term.candidate].location) {
-            let at = rival.hypothesis.covariance.nrows() - rival.term.values.len();
-            widen(&mut estimates, intervals(model, &rival.hypothesis, &rival.term, at, coverage_factor));
+            let Some(other) = &rival.term else { continue };
+            let at = rival.hypothesis.covariance.nrows() - other.values.len();
+            widen(&mut estimates, intervals(model, &rival.hypothesis, other, at, coverage_factor));
         }
     }
     let gained = search.deviance(&rest, hypothesis.sigma) - search.deviance(hypothesis, hypothesis.sigma);

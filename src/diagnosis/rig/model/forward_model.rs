@@ -69,6 +69,11 @@ impl ForwardModel for RigModel {
         estimates
     }
 
+    fn place_among_estimates(&self, parts: &[FindingPart]) -> Option<usize> {
+        let actions = &self.actions[parts.first()?.term.candidate];
+        actions.iter().position(|action| matches!(action, Action::Station(_)))
+    }
+
     fn describe(&self, finding: &Finding) -> Description {
         if let Some(own) = self.own.iter().find(|own| own.effect == finding.effect) {
             return Description { observed: own.observed(finding), cause: finding.effect.cause.to_owned() };

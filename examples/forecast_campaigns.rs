@@ -113,7 +113,7 @@ fn campaign(seed: u64) -> Result<Happened> {
         campaign.readings = None;
     }
     let noise = (plan.repeatability.powi(2) / 3.0 + plan.sensor_noise.powi(2)).sqrt();
-    let budget = Budget::of(&campaign, Some(noise), Some(plan.repeatability))?;
+    let budget = Budget::of(&campaign, Some(noise), Some(plan.repeatability), 0.0)?;
     let budget = Budget { instrument: plan.scanner_noise, clamps, ..budget };
     let setup = planned_setup(&campaign)?;
     let poses: Vec<(usize, Vec<f64>)> = (0..campaign.measurements.len())

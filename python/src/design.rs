@@ -146,9 +146,9 @@ impl Expected {
     }
 
     fn budget(&self, campaign: &rodcal::calibration::Campaign) -> rodcal::Result<Budget> {
-        let [noise, repeatability] = [self.noise_um, self.repeatability_um].map(|um| um.map(|um| um * UM));
-        let budget = Budget::of(campaign, noise, repeatability)?;
-        Ok(Budget { instrument: self.instrument_um * UM, ..budget })
+        let metres = |um: f64| um * UM;
+        let [noise, repeatability] = [self.noise_um, self.repeatability_um].map(|um| um.map(metres));
+        Budget::of(campaign, noise, repeatability, metres(self.instrument_um))
     }
 }
 

@@ -56,7 +56,7 @@ pub fn design_rod(space: DesignSpace, found: Found, asked: &DesignRod<'_>) -> Re
     answer.status = u8::from(study.found.front.is_empty());
     let is_any = !study.shown.is_empty() || study.base.is_some();
     if let Some((campaign, count)) = asked.campaign.filter(|_| is_any) {
-        let budget = Budget { seed: asked.seed, ..Budget::of(campaign, None, None)? };
+        let budget = Budget { seed: asked.seed, ..Budget::of(campaign, None, None, 0.0)? };
         let found = for_robot(&study, campaign, &budget, &Where::Validation, count)?;
         answer.json["for_robot"] = report::design::for_robot_json(&found);
         // before what was looked at

@@ -12,7 +12,7 @@ const SEEDS: usize = 12;
 
 fn forecast(campaign: &Campaign, plan: &Plan, mode: Mode) -> Forecast {
     let noise = (plan.repeatability.powi(2) / 3.0 + plan.sensor_noise.powi(2)).sqrt();
-    let budget = Budget::of(campaign, Some(noise), Some(plan.repeatability)).unwrap();
+    let budget = Budget::of(campaign, Some(noise), Some(plan.repeatability), 0.0).unwrap();
     // clamps are known to so much in each direction
     let clamps = plan.clamp_error / 3f64.sqrt();
     let budget = Budget { instrument: plan.scanner_noise, clamps, ..budget };

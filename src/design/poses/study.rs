@@ -102,7 +102,7 @@ impl<'c> PoseStudy<'c> {
     /// use rodcal::prelude::*;
     ///
     /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
-    /// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6))?;
+    /// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6), 0.0)?;
     /// let wanted = Wanted {
     ///     count: 20,
     ///     criterion: PoseCriterion::O1,
@@ -314,7 +314,7 @@ mod tests {
     use super::*;
 
     fn study(campaign: &Campaign, count: usize, criterion: PoseCriterion) -> PoseStudy<'_> {
-        let budget = Budget::of(campaign, Some(17.6e-6), Some(30e-6)).unwrap();
+        let budget = Budget::of(campaign, Some(17.6e-6), Some(30e-6), 0.0).unwrap();
         let wanted = Wanted {
             count,
             criterion,

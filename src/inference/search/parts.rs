@@ -9,7 +9,7 @@ use crate::inference::{
     Candidate, Effect, Estimate, FindingPart, ForwardModel, Hypothesis, Kind, Location, Parameter, Rival,
     Term,
 };
-use crate::statistics::{chi_squared_survival, student_t_quantile};
+use crate::statistics::{HALF_95, chi_squared_survival, student_t_quantile};
 
 /// So many of the effects that may be there besides count for an interval.
 const AVERAGED: usize = 8;
@@ -132,7 +132,7 @@ fn in_many_places(candidates: &[Candidate], additions: &[f64]) -> Vec<(usize, f6
 /// leaves.
 pub fn coverage_factor_of(search: &Search, hypothesis: &Hypothesis) -> f64 {
     let degrees_of_freedom = (search.degrees_of_freedom() as f64 - hypothesis.determined).max(1.0);
-    student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96)
+    student_t_quantile(0.975, degrees_of_freedom).unwrap_or(HALF_95)
 }
 
 /// Where the parameters of a term begin among all of a hypothesis.

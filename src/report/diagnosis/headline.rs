@@ -3,7 +3,7 @@
 use super::subject::Subject;
 use crate::diagnosis::Limitation;
 use crate::inference::{Diagnosis, Finding, Kind, Location, WrittenTo};
-use crate::units::{UM, significant};
+use crate::units::{UM, capital, significant, uncapital};
 
 /// So many findings are said in full; more are named.
 const IN_FULL: usize = 2;
@@ -46,7 +46,7 @@ fn answer(subject: &Subject) -> String {
                 subject.agrees,
                 match nominal.trim() {
                     "" => String::new(),
-                    words => beginning_lower(words).trim_end_matches('.').to_owned() + "; ",
+                    words => uncapital(words).trim_end_matches('.').to_owned() + "; ",
                 },
                 um(diagnosis.error_of_others()),
                 subject.per,
@@ -124,17 +124,6 @@ fn zeros(diagnosis: &Diagnosis) -> Option<String> {
         um(own * ratio.sqrt()),
         um(own)
     ))
-}
-
-/// What follows a colon.
-fn beginning_lower(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
-}
-
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// False for a mistake that nothing can undo but another recording.

@@ -4,13 +4,12 @@ use serde_json::Value;
 
 use crate::error::{Error, Place, Result};
 use crate::limits;
+use crate::statistics::HALF_95;
 
 /// Commands that have commands of their own.
 const FAMILIES: [&str; 4] = ["rig", "design", "diagnose", "trial"];
 /// Degrees of freedom where the result does not say: a normal distribution.
 const MANY: f64 = 1e9;
-/// Half of a 95 % interval in standard errors of a normal distribution.
-const HALF_95: f64 = 1.959_963_984_540_054;
 
 /// What a run found.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,6 +4,7 @@ use super::compared::Runs;
 use super::tables::{commands, of_pair, shown};
 use super::{Change, Difference, Run, State};
 use crate::report::{Card, Report, Tone};
+use crate::units::capital;
 
 /// The report of `rodcal compare-runs`.
 pub fn report(runs: &Runs) -> Report {
@@ -112,11 +113,6 @@ fn cards(runs: &Runs, other: &Run, difference: &Difference) -> Vec<Card> {
     }
     cards.extend(findings_said(difference).map(|said| Card::new("Findings", said, against)));
     cards
-}
-
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn warnings(runs: &Runs) -> Vec<String> {

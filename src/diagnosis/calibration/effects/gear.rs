@@ -20,16 +20,14 @@ use super::super::model::entry::{Column, linear};
 use super::super::model::gear::{CYCLES_OF_PART, Gear, RECORDED_HALF_PEAK_TO_PEAK, RECORDED_RMS};
 use super::super::model::law::Law;
 use super::super::write_back::correction_table::table;
-use super::{
-    CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, capital, joint_by, law, no_event, nth,
-};
+use super::{CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, joint_by, law, no_event, nth};
 use crate::calibration::campaign::Campaign;
 use crate::inference::{
     Candidate, Effect, Estimate, Finding, FindingPart, JointVariable, Kind, NotTestable, Quantity, Reported,
     WrittenTo,
 };
 use crate::robot;
-use crate::units::significant;
+use crate::units::{capital, significant};
 
 /// Last frequency of the scan, cycles per revolution, and its widest step.
 const SCAN: (f64, f64) = (40.0, 0.5);

@@ -15,7 +15,7 @@ use super::search::{AdoptedStep, FittedDraft, MistakeSearch, SearchStep};
 use super::slips::Slip;
 use crate::diagnosis::Suspicion;
 use crate::inference::{Description, Effect, Estimate, Finding, Location, Part, Rival, WrittenTo};
-use crate::units::{DEG, MM, significant};
+use crate::units::{DEG, MM, significant, uncapital};
 
 impl Mended {
     /// Adds what was found: what undoes it, why that is, and ln of its odds against what is there
@@ -28,7 +28,7 @@ impl Mended {
         (cure, why): (&str, &str),
         log_odds: f64,
     ) {
-        let lower = lower(cure);
+        let lower = uncapital(cure);
         self.suspicions.push(Suspicion::new(format!("likely mistake in {location}: {why}; {lower}")));
         let observed = Description { observed: cure.to_owned(), cause: why.to_owned() };
         let p_value = (-log_odds).exp();
@@ -173,9 +173,4 @@ impl Mended {
             _ => {}
         }
     }
-}
-
-fn lower(sentence: &str) -> String {
-    let mut letters = sentence.chars();
-    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }

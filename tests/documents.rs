@@ -62,8 +62,8 @@ fn the_tables_of_effects_are_those_of_the_registries() {
     }
 }
 
-/// Also in the tables that people write: what is tried of a mistake, what an effect is confused with
-/// and what separates them.
+/// Also in the tables that people write: what is tried of a mistake, what an effect is confused
+/// with and what separates them.
 #[test]
 fn the_tables_that_people_write_list_every_effect_and_no_other() {
     let text = document("docs/diagnosis.md");

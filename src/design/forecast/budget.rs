@@ -31,8 +31,8 @@ pub struct Budget {
 
 impl Budget {
     /// Of a campaign: the noise that is given here, or that the file states, or that its recording
-    /// shows, or else that of the paper; `repeatability` (m) likewise; and the `instrument` (m) that
-    /// measures the unseen poses, 0 for none.
+    /// shows, or else that of the paper; `repeatability` (m) likewise; and the `instrument` (m)
+    /// that measures the unseen poses, 0 for none.
     ///
     /// # Errors
     /// What the calibration of a recording refuses.

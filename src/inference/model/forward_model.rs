@@ -111,8 +111,8 @@ pub trait ForwardModel: Sync {
         parts.iter().flat_map(|part| part.estimates.clone()).collect()
     }
 
-    /// Which of [`ForwardModel::estimates`] is the place of these parts, where that is a number that
-    /// is fitted.
+    /// Which of [`ForwardModel::estimates`] is the place of these parts, where that is a number
+    /// that is fitted.
     fn place_among_estimates(&self, _: &[FindingPart]) -> Option<usize> {
         None
     }

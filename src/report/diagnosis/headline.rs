@@ -40,7 +40,7 @@ fn answer(subject: &Subject) -> String {
     let nominal = subject.nominal.as_ref().map_or_else(String::new, |words| format!(" {words}"));
     if findings.is_empty() {
         return match remains {
-            Some(remains) => format!("{remains}{nominal} {}", capital(&scatter(subject))),
+            Some(remains) => format!("{remains}{nominal} {}", capital(scatter(subject))),
             None => format!(
                 "{}: {}the residual, {} µm{}, is {}.{}",
                 subject.agrees,

@@ -113,8 +113,8 @@ fn campaign(seed: u64) -> Result<Happened> {
         campaign.readings = None;
     }
     let noise = (plan.repeatability.powi(2) / 3.0 + plan.sensor_noise.powi(2)).sqrt();
-    let budget = Budget::of(&campaign, Some(noise), Some(plan.repeatability))?;
-    let budget = budget.with_instrument(plan.scanner_noise).with_clamps(clamps);
+    let budget = Budget::of(&campaign, Some(noise), Some(plan.repeatability), plan.scanner_noise)?;
+    let budget = budget.with_clamps(clamps);
     let setup = planned_setup(&campaign)?;
     let poses: Vec<(usize, Vec<f64>)> = (0..campaign.measurements.len())
         .map(|row| (campaign.measurements.rows[row].group, campaign.measurements.joints(row).to_vec()))

@@ -9,6 +9,8 @@ mod diagnosed;
 mod law_formula;
 mod limitation;
 pub mod rig;
+mod suspicion;
 
 pub use diagnosed::Diagnosed;
 pub use limitation::Limitation;
+pub use suspicion::Suspicion;

@@ -135,6 +135,11 @@ fn of_the_program<'t>(file: &str, text: &'t str) -> &'t str {
     text.split("#[cfg(test)]\nmod tests {").next().unwrap()
 }
 
+/// The code without the lines that are comments, which may show a name in an example.
+fn without_comments(code: &str) -> String {
+    code.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+}
+
 /// All files of the project's crates.
 fn everything() -> Vec<Source> {
     ROOMS.iter().chain(&[TRIAL, PNG, PYTHON]).flat_map(|directory| files(directory)).collect()
@@ -305,12 +310,14 @@ fn inference_knows_no_physics() {
     assert!(count > 10, "only {count} imports found: does the test still read them?");
 }
 
-/// Names of all effects that a diagnosis has.
+/// Names of all effects and mistakes that a diagnosis has.
 fn names_of_effects() -> Vec<&'static str> {
-    let rig = rodcal::diagnosis::rig::effects::registry::ALL.iter().map(|known| known.effect.name);
-    let calibration = rodcal::diagnosis::calibration::effects::registry::ALL.iter();
-    let names: Vec<&str> = rig.chain(calibration.map(|known| known.effect.name)).collect();
-    assert!(names.len() > 30);
+    use rodcal::diagnosis::{calibration, rig};
+    let of_rig = rig::effects::registry::ALL.iter().map(|known| known.effect.name);
+    let of_calibration = calibration::effects::registry::ALL.iter().map(|known| known.effect.name);
+    let mistakes = rig::effects::registry::MISTAKES.iter().chain(&calibration::effects::registry::MISTAKES);
+    let names: Vec<&str> = of_rig.chain(of_calibration).chain(mistakes.map(|mistake| mistake.name)).collect();
+    assert!(names.len() > 60);
     names
 }
 
@@ -320,10 +327,7 @@ fn no_effect_is_compared_by_its_name() {
     let names = names_of_effects();
     let is_asked = |file: &str| file.contains("diagnosis") || file.contains("inference");
     for Source { file, text, .. } in files("src").into_iter().filter(|source| is_asked(&source.file)) {
-        let code = of_the_program(&file, &text);
-        // an example says what is found
-        let code: Vec<&str> = code.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
-        let code = code.join("\n");
+        let code = without_comments(of_the_program(&file, &text));
         let is_family = file.contains("/effects/") || file.contains("/tests");
         for name in &names {
             let literal = format!("\"{name}\"");
@@ -335,10 +339,7 @@ fn no_effect_is_compared_by_its_name() {
 /// What conceals effects has a registry of its own: it must not know the library.
 #[test]
 fn a_trial_names_effects_in_its_registry_alone() {
-    let mistakes = rodcal::diagnosis::rig::effects::registry::MISTAKES
-        .iter()
-        .chain(&rodcal::diagnosis::calibration::effects::registry::MISTAKES);
-    let library: Vec<&str> = mistakes.map(|mistake| mistake.name).chain(names_of_effects()).collect();
+    let library = names_of_effects();
     let own: Vec<&str> = EffectName::ALL.iter().map(EffectName::as_str).collect();
     for name in own.iter().filter(|name| name.contains('_')) {
         assert!(library.contains(name), "no diagnosis knows {name}");

@@ -52,6 +52,7 @@ fn the_tables_of_effects_are_those_of_the_registries() {
     let text = document("docs/diagnosis.md");
     for (name, effects) in [
         ("effects of a rig", effects_of_a_rig()),
+        ("mistakes at a rig", rig::effects::registry::MISTAKES.to_vec()),
         ("mistakes in a campaign", calibration::effects::registry::MISTAKES.to_vec()),
         ("effects of a calibration", effects_of_a_calibration()),
     ] {
@@ -63,13 +64,16 @@ fn the_tables_of_effects_are_those_of_the_registries() {
     }
 }
 
-/// Also in the tables that people write: what an effect is confused with, and what separates them.
+/// Also in the tables that people write: what is tried of a mistake, what an effect is confused
+/// with and what separates them.
 #[test]
-fn every_effect_has_its_rivals_and_no_other_is_listed() {
+fn the_tables_that_people_write_list_every_effect_and_no_other() {
     let text = document("docs/diagnosis.md");
-    for (name, effects) in
-        [("rivals on a rig", effects_of_a_rig()), ("rivals in a calibration", effects_of_a_calibration())]
-    {
+    for (name, effects) in [
+        ("what is tried at a rig", rig::effects::registry::MISTAKES.to_vec()),
+        ("rivals on a rig", effects_of_a_rig()),
+        ("rivals in a calibration", effects_of_a_calibration()),
+    ] {
         let start = text.find(&format!("<!-- {name} -->")).unwrap_or_else(|| panic!("no mark {name}"));
         let table = text[start..].split_once("<!-- end -->").expect("the table ends").0;
         let first_cells = table.lines().filter_map(|line| line.strip_prefix("| `")?.split(" |").next());

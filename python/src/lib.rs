@@ -12,6 +12,7 @@ mod errors;
 mod inputs;
 mod parts;
 mod rods;
+mod space;
 mod work;
 
 use pyo3::prelude::*;

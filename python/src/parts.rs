@@ -8,9 +8,9 @@ use rodcal::design::{DesignSpace, PART, Search, Searched};
 
 use crate::arguments::within;
 use crate::calibration::{compared, mode_named, robust_named};
-use crate::design::Design;
 use crate::errors::{IntoPython, wrong};
 use crate::inputs::Campaign;
+use crate::space::Design;
 use crate::work::{Progress, run};
 
 /// Which rods a search looks at.

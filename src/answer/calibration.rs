@@ -6,6 +6,7 @@ use crate::calibration::{
     self, Calibration, Campaign, CompareOptions, Compensation, CrossValidation, Draws, Mode, Options,
     write_back, write_beside,
 };
+use crate::diagnosis::Suspicion;
 use crate::diagnosis::calibration::{Neighbours, suspected};
 use crate::error::Result;
 use crate::report;
@@ -92,7 +93,8 @@ pub fn calibrate_held_out<'c>(
     }
     let suspicions = suspected(campaign, mode, others)?;
     let is_plausible = calibrated.is_plausible() && suspicions.iter().all(|suspicion| !suspicion.spoils_fit);
-    let lines: Vec<String> = suspicions.into_iter().map(|suspicion| suspicion.description).collect();
+    let line = |suspicion: &Suspicion| format!("{suspicion} (`rodcal diagnose calibration` says more)");
+    let lines: Vec<String> = suspicions.iter().map(line).collect();
     let mut json = report::calibration::json(campaign, &calibrated, cross_validation);
     json["plausible"] = is_plausible.into();
     json["suspected_mistakes"] = lines.clone().into();

@@ -101,7 +101,7 @@ pub fn design_rod(space: DesignSpace, found: Found, asked: &DesignRod<'_>) -> Re
     answer.status = u8::from(study.found.front.is_empty());
     let is_any = !study.shown.is_empty() || study.base.is_some();
     if let Some((campaign, count)) = asked.campaign.filter(|_| is_any) {
-        let budget = Budget { seed: asked.seed, ..Budget::of(campaign, None, None)? };
+        let budget = Budget { seed: asked.seed, ..Budget::of(campaign, None, None, 0.0)? };
         let found = for_robot(&study, campaign, &budget, &Where::Validation, count)?;
         answer.json["for_robot"] = report::design::for_robot_json(&found);
         // before what was looked at
@@ -123,7 +123,7 @@ pub fn design_rod(space: DesignSpace, found: Found, asked: &DesignRod<'_>) -> Re
 /// use rodcal::prelude::*;
 ///
 /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
-/// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6))?;
+/// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6), 0.0)?;
 /// let wanted = Wanted::new(20, PoseCriterion::O1, Source::Generated(60));
 /// let answer = design_poses(&campaign, wanted, budget, &|_| {})?;
 /// assert_eq!(answer.json["poses"].as_array().map(Vec::len), Some(20));

@@ -18,7 +18,7 @@ use crate::rod::Rod;
 /// use rodcal::prelude::*;
 ///
 /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
-/// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6))?;
+/// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6), 0.0)?;
 /// let answer = forecast(&campaign, &[], budget, &Where::Validation, None)?;
 /// assert_eq!(answer.json["forecasts"][0]["modes"].as_array().map(Vec::len), Some(4));
 /// # Ok::<(), rodcal::Error>(())

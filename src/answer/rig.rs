@@ -1,6 +1,7 @@
 //! How much does a rod really bend?
 
 use super::Answer;
+use crate::diagnosis::Suspicion;
 use crate::diagnosis::rig::suspected;
 use crate::error::Result;
 use crate::report;
@@ -28,10 +29,11 @@ pub fn rig_fit(readings: &Readings, rod: Option<&Rod>, options: &Options) -> Res
     let mut report = report::rig::report(&fit, readings, rod);
     let suspicions = suspected(readings, rod)?;
     // nothing that follows is worth more than what it is made of
-    if let Some(worst) = suspicions.first().and_then(|worst| worst.split("; ").next()) {
+    if let Some(worst) = suspicions.first() {
         report.headline = format!("Most likely a mistake: {worst}. {}", report.headline);
     }
-    report.warnings.extend(suspicions);
+    let line = |suspicion: &Suspicion| format!("{suspicion}; `rodcal diagnose rig` says more.");
+    report.warnings.extend(suspicions.iter().map(line));
     Ok(Answer::new(report::rig::json(&fit, readings, rod), report))
 }
 

@@ -172,11 +172,6 @@ impl<T: Number> Chain<T> {
         self.nodes.len() - 1
     }
 
-    /// Number of elements.
-    pub fn element_count(&self) -> usize {
-        self.elements.len()
-    }
-
     /// Position of a node in space, m.
     pub fn position(&self, node: usize) -> Vector3<T> {
         self.nodes[node].position

@@ -45,9 +45,13 @@ pub struct Rig {
 }
 
 fn notes() -> String {
+    let mistakes = listed(registry::MISTAKES.into_iter());
     let effects = listed(registry::ALL.iter().map(|known| &known.effect));
     format!(
         "\
+Mistakes come first, and what follows is said of the corrected readings and rod:
+
+{mistakes}
 The model is the rod as its file gives it; nothing is fitted. Readings that
 differ from it are explained by as few of these effects as possible:
 

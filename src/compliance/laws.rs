@@ -16,10 +16,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::Compliance;
 use crate::rod::constants::covariance;
 use crate::rod::{LawVariable, Rod, RodLaw, RodLawPlace};
-use crate::units::{STANDARD_GRAVITY, UM};
-
-const PERCENT: f64 = 0.01;
-const URAD: f64 = 1e-6;
+use crate::units::{PERCENT, STANDARD_GRAVITY, UM, URAD};
 
 /// The laws of a rod between a station that is loaded and one that is read.
 #[derive(Debug, Clone)]

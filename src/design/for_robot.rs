@@ -64,7 +64,7 @@ pub struct ForRobot {
 /// ", &|_| unreachable!())?;
 /// let study = Study::new(space, Searched::All, None, &|_| {})?;
 /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
-/// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6))?;
+/// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6), 0.0)?;
 /// let found = for_robot(&study, &campaign, &budget, &Where::Validation, Some(20))?;
 /// assert_eq!(found.of_front, [1, 1]);
 /// let forecast = found.ranked[0].of(Mode::Fea).expect("the robot reaches the clamps with it");

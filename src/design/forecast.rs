@@ -200,7 +200,7 @@ impl<'c> Forecaster<'c> {
     /// let recording = &campaign.measurements;
     /// let poses: Vec<_> =
     ///     (0..60).map(|row| (recording.rows[row].group, recording.joints(row).to_vec())).collect();
-    /// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6))?;
+    /// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6), 0.0)?;
     /// let setup = planned_setup(&campaign)?;
     /// let forecaster = Forecaster::new(&campaign, setup, budget, &Where::Validation)?;
     /// let forecast = forecaster.forecast(&poses, Mode::Meas)?;

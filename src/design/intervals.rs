@@ -8,9 +8,7 @@
 
 use super::figure::{Design, Figure, Figures, Goal};
 use crate::rod::{NominalNumber, Rod};
-
-/// Half of a 95 % interval of a normal number, in standard deviations.
-const HALF: f64 = 1.959964;
+use crate::statistics::HALF_95;
 
 /// How well the figures of one design are known.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,7 +30,7 @@ impl Intervals {
             let by = slopes.0.map(|slope| slope * nominal.standard_uncertainty);
             shifts.push((number.clone(), by.map(|by| if by.is_finite() { by } else { 0.0 })));
         }
-        let half = |k: usize| HALF * shifts.iter().map(|(_, shift)| shift[k].powi(2)).sum::<f64>().sqrt();
+        let half = |k: usize| HALF_95 * shifts.iter().map(|(_, shift)| shift[k].powi(2)).sum::<f64>().sqrt();
         Intervals { half: Figures(std::array::from_fn(half)), shifts }
     }
 
@@ -57,7 +55,7 @@ impl Intervals {
             self.shifts.iter().map(|(number, shift)| (shift[k] - of_other(number).unwrap_or(0.0)).powi(2));
         let has = |number: &NominalNumber| self.shifts.iter().any(|(known, _)| known == number);
         let others = other.shifts.iter().filter(|(number, _)| !(is_shared(number) && has(number)));
-        HALF * (own.sum::<f64>() + others.map(|(_, shift)| shift[k].powi(2)).sum::<f64>()).sqrt()
+        HALF_95 * (own.sum::<f64>() + others.map(|(_, shift)| shift[k].powi(2)).sum::<f64>()).sqrt()
     }
 }
 
@@ -131,7 +129,7 @@ mod tests {
         // an L: reach² = L1² + L2², each known to 0.3 mm
         let (l1, l2) = (150.0f64, 525.0f64);
         let reach = l1.hypot(l2);
-        let half = 1.959964 * ((l1 * 0.3 / reach).powi(2) + (l2 * 0.3 / reach).powi(2)).sqrt();
+        let half = HALF_95 * ((l1 * 0.3 / reach).powi(2) + (l2 * 0.3 / reach).powi(2)).sqrt();
         assert!((designs[0].figures.get(Figure::Reach).unwrap() - reach).abs() < 1e-9);
         assert!((intervals[0].half.get(Figure::Reach).unwrap() - half).abs() < 1e-5);
         // 30 µm of 1 mm of wall, and 1 % of E: some percent

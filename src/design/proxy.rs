@@ -6,6 +6,7 @@
 
 use super::forecast::Forecast;
 use crate::calibration::Mode;
+use crate::statistics::HALF_95;
 
 /// Fewer rods have no order to speak of.
 const FEWEST: usize = 5;
@@ -71,7 +72,7 @@ fn spearman(x: &[f64], y: &[f64]) -> (f64, [f64; 2]) {
         |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| (a - middle) * (b - middle)).sum() };
     let scale = (product(x, x) * product(y, y)).sqrt();
     let r = if scale > 0.0 { product(x, y) / scale } else { 0.0 };
-    let half = 1.959964 * (1.06 / (x.len() - 3) as f64).sqrt();
+    let half = HALF_95 * (1.06 / (x.len() - 3) as f64).sqrt();
     // a perfect order has no end of its interval inside
     let z = r.clamp(-1.0 + 1e-12, 1.0 - 1e-12).atanh();
     (r, [(z - half).tanh(), (z + half).tanh()])
@@ -104,7 +105,7 @@ mod tests {
         // 1 − 6·Σd²/(n(n² − 1)) with d = 1, 1, 1, 1, 1, 1
         let (swapped, interval) = value_at([2.0, 1.0, 4.0, 3.0, 6.0, 5.0]);
         assert!((swapped - (1.0 - 36.0 / 210.0)).abs() < 1e-12);
-        let half = 1.959964 * (1.06f64 / 3.0).sqrt();
+        let half = HALF_95 * (1.06f64 / 3.0).sqrt();
         assert!((interval[0] - (swapped.atanh() - half).tanh()).abs() < 1e-12);
         assert_eq!(value_at([5.0; 6]).0, 0.0);
     }

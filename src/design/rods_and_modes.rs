@@ -41,7 +41,7 @@ pub struct RodForecast {
 /// use rodcal::prelude::*;
 ///
 /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
-/// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6))?;
+/// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6), 0.0)?;
 /// let rods = rods_and_modes(&campaign, &[], &budget, &Where::Validation, None)?;
 /// let means: Vec<f64> = rods[0].modes.iter().map(|forecast| forecast.mean).collect();
 /// assert_eq!((means.len(), rods[0].poses, rods[0].is_recorded), (4, 60, true));

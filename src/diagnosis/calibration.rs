@@ -47,4 +47,5 @@ pub use self::write_back::apply::{Applied, apply};
 pub use self::write_back::destination::law_destination;
 pub use diagnose::{CalibrationDiagnosis, Happened, diagnose_as_recorded, diagnose_calibrated};
 pub use effects::CalibrationEffect;
-pub use mistakes::{Mended, Neighbours, Suspicion, mend, suspected};
+pub use effects::gear::GearError;
+pub use mistakes::{Mended, Neighbours, mend, suspected};

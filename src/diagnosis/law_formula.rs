@@ -3,10 +3,8 @@
 
 use crate::inference::law::{Constant, Form, Law, Memory};
 use crate::rod::LawConstant;
+use crate::statistics::HALF_95;
 use crate::units::significant;
-
-/// Half of a 95 % interval, in standard deviations.
-const HALF: f64 = 1.96;
 
 /// The law along one of its directions, in `x`; a formula of a variable with two signs is odd where
 /// its form is.
@@ -50,7 +48,7 @@ pub(super) fn constants(law: &Law) -> Vec<LawConstant> {
         value: digits(constant.value),
         // several values apart have no standard deviation: the source says which they are
         standard_uncertainty: match constant.also.is_empty() {
-            true => rounded((constant.high - constant.low) / (2.0 * HALF)),
+            true => rounded((constant.high - constant.low) / (2.0 * HALF_95)),
             false => 0.0,
         },
         correlation: (0..k).filter_map(|j| law.correlation.get((k, j)).copied().map(thousandths)).collect(),

@@ -21,7 +21,7 @@ use crate::inference::search::selection::{DiscrepancyModel, Pairs};
 use crate::inference::{
     Covariate, Diagnosis, Discrepancy, Evidence, FindingPart, ForwardModel, Hypothesis, ShownBy, Term,
 };
-use crate::statistics::{chi_squared_survival, student_t_quantile};
+use crate::statistics::{HALF_95, chi_squared_survival, student_t_quantile};
 
 /// So many times what a recording may scatter it may, where repeats show that it does.
 const SHOWN_BY_REPEATS: f64 = 3.0;
@@ -151,7 +151,7 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         }
         None => None,
     };
-    let coverage_factor = student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96);
+    let coverage_factor = student_t_quantile(0.975, degrees_of_freedom).unwrap_or(HALF_95);
     let worth = longest.background_worth();
     let nominal = match worth > WORTH_SAYING {
         true => folded.estimates(longest, coverage_factor),

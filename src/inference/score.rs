@@ -26,7 +26,7 @@ mod tests;
 use nalgebra::{DMatrix, DMatrixView, DVector, DVectorView};
 
 use crate::linalg::{InverseRoot, transposed_product};
-use crate::statistics::{ln_normal_mass, student_t_quantile};
+use crate::statistics::{HALF_95, ln_normal_mass, student_t_quantile};
 
 /// Least noise variance relative to that of the residual.
 const LEAST: f64 = 1e-12;
@@ -93,8 +93,6 @@ pub struct ColumnBlock<'a> {
 /// Parameters of an effect that the data leave open, from which on their prior's size counts for an
 /// interval.
 const UNDETERMINED: f64 = 0.05;
-/// 97.5 % quantile of the normal distribution.
-const NORMAL: f64 = 1.959964;
 
 /// What a fit of a hypothesis comes to.
 #[derive(Debug, Clone)]
@@ -230,7 +228,7 @@ impl Moments {
             if count > 1 && known < count as f64 - UNDETERMINED {
                 let squares: f64 = own.clone().map(|k| seen(k) * score.estimate[k].powi(2)).sum();
                 let size = (squares / known.max(UNDETERMINED)).sqrt();
-                let wider = student_t_quantile(0.975, known.max(1.0)).unwrap_or(NORMAL) / NORMAL;
+                let wider = student_t_quantile(0.975, known.max(1.0)).unwrap_or(HALF_95) / HALF_95;
                 sizes[own].iter_mut().for_each(|own| *own = own.max(size) * wider);
             }
         }

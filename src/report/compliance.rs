@@ -5,7 +5,7 @@ mod laws;
 mod numbers;
 pub(super) mod steps;
 
-use known::{INTERVAL, Known};
+use known::Known;
 pub(super) use numbers::in_um;
 pub use numbers::{number, rows};
 

@@ -14,4 +14,4 @@ pub use self::compared::Runs;
 pub use self::difference::{Change, Difference, Input, LEVEL, State};
 pub use self::json::json;
 pub use self::report::report;
-pub use self::run::{Quantity, Run, name_and_unit};
+pub use self::run::{Precedence, Quantity, Run, name_and_unit};

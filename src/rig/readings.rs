@@ -19,7 +19,7 @@ use crate::delimited::{Row, Table, meant_to_be, nearest_name, renamed};
 use crate::error::{Error, Place, Result};
 use crate::files;
 use crate::limits;
-use crate::units::{MM, STANDARD_GRAVITY, UM};
+use crate::units::{ABSOLUTE_ZERO_C, MM, STANDARD_GRAVITY, UM};
 use columns::{LOAD_COLUMNS, OFFSET_COLUMNS, TEXT_COLUMNS, is_one_of};
 use reading::{loads_of, newtons, only_load};
 
@@ -29,8 +29,6 @@ pub use instant::Instant;
 pub(crate) use instant::instants;
 pub use reading::{Axis, Direction, Phase, Reading};
 pub use warning::Warning;
-
-const ABSOLUTE_ZERO_C: f64 = -273.15;
 
 /// The readings of one file.
 #[derive(Debug, Clone, PartialEq)]

@@ -10,6 +10,19 @@ use crate::error::Result;
 use crate::toml_text::{Number, TomlText, in_unit};
 use crate::units::{DEG, URAD, URAD_PER_NM};
 
+/// Names of the effects.
+const TRANSMISSION_ERROR: &str = "transmission_error";
+const ENCODER_SCALE: &str = "encoder_scale";
+const BACKLASH: &str = "backlash";
+const WEIGHT: &str = "weight";
+const JOINT_COMPLIANCE: &str = "joint_compliance";
+const JOINT_NONLINEAR_STIFFNESS: &str = "joint_nonlinear_stiffness";
+const LINK_FLEXIBILITY: &str = "link_flexibility";
+const JOINT_FRICTION: &str = "joint_friction";
+const READBACK_LAG: &str = "readback_lag";
+const WRIST_COUPLING: &str = "wrist_coupling";
+const GRAVITY_TILT: &str = "gravity_tilt";
+
 /// Columns of the table of corrections.
 const COLUMNS: [&str; 3] = ["joint", "angle_deg", "correction_urad"];
 
@@ -37,196 +50,13 @@ pub(super) struct RawEffect {
 
 /// An effect of a robot with so many joints.
 pub(super) fn read(toml: &TomlText, spanned: &Spanned<RawEffect>, joints: usize) -> Result<Effect> {
-    let raw = spanned.get_ref();
-    let number_of = |key: &str, number: &Spanned<usize>| match number.get_ref().checked_sub(1) {
-        Some(index) if index < joints => Ok(index),
-        _ => Err(toml.is(key, number, &format!("a joint from 1 to {joints}"))),
-    };
-    let lacks = |what: &str| Err(toml.wrong(spanned, format!("an effect without {what}"), EXPECTED));
-    let finite = |key: &str, number: &Number, si: f64| Ok(toml.finite(key, number)? * si);
-    let joint = raw.joint.as_ref().map(|joint| number_of("effect.joint", joint)).transpose()?;
-    if let ("readback_lag", Some(fraction)) = (raw.name.get_ref().as_str(), &raw.fraction) {
-        return Ok(Effect::Lag { joint, fraction: finite("effect.fraction", fraction, 1.0)? });
-    }
-    if raw.name.get_ref() == "gravity_tilt" {
-        if let Some(joint) = &raw.joint {
-            let found = "gravity_tilt has the key `joint`".to_owned();
-            return Err(toml.wrong(joint, found, "no joint: the whole arm tilts"));
-        }
-        return match &raw.urad_per_nm {
-            Some(tilt) => {
-                Ok(Effect::GravityTilt { per_nm: finite("effect.urad_per_nm", tilt, URAD_PER_NM)? })
-            }
-            None => lacks("urad_per_nm"),
-        };
-    }
-    let Some(joint) = joint else { return lacks("joint") };
-    match raw.name.get_ref().as_str() {
-        "transmission_error" => match (&raw.cycles_per_rev, &raw.angle_deg, &raw.correction_urad) {
-            (Some(cycles), None, None) => {
-                let part = |key: &str, number: &Option<Number>| match number {
-                    Some(number) => finite(key, number, URAD),
-                    None => Ok(0.0),
-                };
-                Ok(Effect::Harmonic {
-                    joint,
-                    cycles_per_rev: finite("effect.cycles_per_rev", cycles, 1.0)?,
-                    sine: part("effect.sin_urad", &raw.sin_urad)?,
-                    cosine: part("effect.cos_urad", &raw.cos_urad)?,
-                })
-            }
-            (None, Some(angles), Some(corrections)) => {
-                let numbers = |key: &str, list: &Spanned<Vec<Number>>, si: f64| -> Result<Vec<f64>> {
-                    list.get_ref().iter().map(|number| finite(key, number, si)).collect()
-                };
-                let rows: Vec<(f64, f64)> = numbers("effect.angle_deg", angles, DEG)?
-                    .into_iter()
-                    .zip(numbers("effect.correction_urad", corrections, URAD)?)
-                    .collect();
-                let is_whole = angles.get_ref().len() == corrections.get_ref().len() && !rows.is_empty();
-                match is_whole && rows.is_sorted_by(|a, b| a.0 < b.0) {
-                    true => Ok(Effect::Table { joint, rows }),
-                    false => {
-                        let expected = "ascending angles, with one correction_urad for each";
-                        Err(toml.wrong(angles, "effect.angle_deg is another list".into(), expected))
-                    }
-                }
-            }
-            _ => lacks("cycles_per_rev, or angle_deg and correction_urad"),
-        },
-        "encoder_scale" => match &raw.factor {
-            Some(factor) => Ok(Effect::EncoderScale { joint, factor: finite("effect.factor", factor, 1.0)? }),
-            None => lacks("factor"),
-        },
-        "backlash" => match &raw.play_urad {
-            Some(play) => {
-                let play = finite("effect.play_urad", play, URAD)?;
-                match &raw.taken_up {
-                    None => Ok(Effect::Backlash { joint, play }),
-                    Some(by) if by.get_ref() == "load" => Ok(Effect::Backlash { joint, play }),
-                    Some(by) if by.get_ref() == "approach" => Ok(Effect::PlayByApproach { joint, play }),
-                    Some(by) => Err(toml.is("effect.taken_up", by, "\"load\" or \"approach\"")),
-                }
-            }
-            None => lacks("play_urad"),
-        },
-        "weight" => match &raw.urad_per_m {
-            Some(turn) => {
-                let at = raw.at_joint.as_ref().map(|at| number_of("effect.at_joint", at)).transpose()?;
-                Ok(Effect::Weight { joint, at, per_metre: finite("effect.urad_per_m", turn, URAD)? })
-            }
-            None => lacks("urad_per_m"),
-        },
-        "joint_compliance" => match &raw.urad_per_nm {
-            Some(turn) => {
-                Ok(Effect::Compliance { joint, per_nm: finite("effect.urad_per_nm", turn, URAD_PER_NM)? })
-            }
-            None => lacks("urad_per_nm"),
-        },
-        "joint_nonlinear_stiffness" => {
-            let (power, key, number) = match (&raw.urad_per_nm2, &raw.urad_per_nm3) {
-                (Some(number), None) => (TorquePower::Square, "effect.urad_per_nm2", number),
-                (None, Some(number)) => (TorquePower::Cube, "effect.urad_per_nm3", number),
-                _ => return lacks("urad_per_nm2, or urad_per_nm3"),
-            };
-            Ok(Effect::NonlinearStiffness { joint, power, coefficient: finite(key, number, URAD)? })
-        }
-        "link_flexibility" => match &raw.urad_per_nm {
-            Some(turn) => Ok(Effect::LinkFlexibility {
-                joint,
-                per_nm: finite("effect.urad_per_nm", turn, URAD_PER_NM)?,
-            }),
-            None => lacks("urad_per_nm"),
-        },
-        "joint_friction" => match &raw.urad_per_nm {
-            Some(wound) => {
-                Ok(Effect::Friction { joint, per_nm: finite("effect.urad_per_nm", wound, URAD_PER_NM)? })
-            }
-            None => lacks("urad_per_nm"),
-        },
-        "readback_lag" => lacks("fraction"),
-        "wrist_coupling" => match (&raw.from_joint, &raw.fraction) {
-            (Some(from), Some(fraction)) => Ok(Effect::Coupling {
-                from: number_of("effect.from_joint", from)?,
-                joint,
-                fraction: finite("effect.fraction", fraction, 1.0)?,
-            }),
-            _ => lacks("from_joint and fraction"),
-        },
-        _ => Err(toml.is("effect.name", &raw.name, EXPECTED)),
-    }
+    EffectSection { toml, spanned, joints }.read()
 }
-
-const EXPECTED: &str = "transmission_error (cycles_per_rev, sin_urad, cos_urad; or angle_deg and correction_urad), \
-                        encoder_scale (factor), backlash (play_urad, taken_up), wrist_coupling (from_joint, fraction), \
-                        readback_lag (fraction; of all joints without joint), joint_compliance (urad_per_nm), joint_nonlinear_stiffness (urad_per_nm2 or urad_per_nm3), \
-                        joint_friction (urad_per_nm), link_flexibility (urad_per_nm), gravity_tilt (urad_per_nm; without joint) or weight (at_joint, urad_per_m)";
 
 /// The section of an effect.
 pub(super) fn written(effect: &Effect) -> String {
-    let head = |name: &str, joint: usize| format!("\n[[effect]]\nname = \"{name}\"\njoint = {}\n", joint + 1);
-    let urad = |value: f64| in_unit(value, URAD);
-    match effect {
-        Effect::Harmonic { joint, cycles_per_rev, sine, cosine } => format!(
-            "{}cycles_per_rev = {cycles_per_rev:?}\nsin_urad = {:?}\ncos_urad = {:?}\n",
-            head("transmission_error", *joint),
-            urad(*sine),
-            urad(*cosine)
-        ),
-        Effect::Table { joint, rows } => {
-            let angles: Vec<f64> = rows.iter().map(|row| in_unit(row.0, DEG)).collect();
-            let corrections: Vec<f64> = rows.iter().map(|row| urad(row.1)).collect();
-            format!(
-                "{}angle_deg = {angles:?}\ncorrection_urad = {corrections:?}\n",
-                head("transmission_error", *joint)
-            )
-        }
-        Effect::EncoderScale { joint, factor } => {
-            format!("{}factor = {factor:?}\n", head("encoder_scale", *joint))
-        }
-        Effect::Backlash { joint, play } => {
-            format!("{}play_urad = {:?}\n", head("backlash", *joint), urad(*play))
-        }
-        Effect::PlayByApproach { joint, play } => {
-            format!("{}play_urad = {:?}\ntaken_up = \"approach\"\n", head("backlash", *joint), urad(*play))
-        }
-        Effect::Friction { joint, per_nm } => {
-            let h = in_unit(*per_nm, URAD_PER_NM);
-            format!("{}urad_per_nm = {h:?}\n", head("joint_friction", *joint))
-        }
-        Effect::Lag { joint: Some(joint), fraction } => {
-            format!("{}fraction = {fraction:?}\n", head("readback_lag", *joint))
-        }
-        Effect::Lag { joint: None, fraction } => {
-            format!("\n[[effect]]\nname = \"readback_lag\"\nfraction = {fraction:?}\n")
-        }
-        Effect::Compliance { joint, per_nm } => {
-            let c = in_unit(*per_nm, URAD_PER_NM);
-            format!("{}urad_per_nm = {c:?}\n", head("joint_compliance", *joint))
-        }
-        Effect::NonlinearStiffness { joint, power, coefficient } => {
-            let key = match power {
-                TorquePower::Square => "urad_per_nm2",
-                TorquePower::Cube => "urad_per_nm3",
-            };
-            format!("{}{key} = {:?}\n", head("joint_nonlinear_stiffness", *joint), urad(*coefficient))
-        }
-        Effect::LinkFlexibility { joint, per_nm } => {
-            let k = in_unit(*per_nm, URAD_PER_NM);
-            format!("{}urad_per_nm = {k:?}\n", head("link_flexibility", *joint))
-        }
-        Effect::GravityTilt { per_nm } => {
-            let k = in_unit(*per_nm, URAD_PER_NM);
-            format!("\n[[effect]]\nname = \"gravity_tilt\"\nurad_per_nm = {k:?}\n")
-        }
-        Effect::Weight { joint, at, per_metre } => {
-            let at = at.map_or_else(String::new, |at| format!("at_joint = {}\n", at + 1));
-            format!("{}{at}urad_per_m = {:?}\n", head("weight", *joint), urad(*per_metre))
-        }
-        Effect::Coupling { from, joint, fraction } => {
-            format!("{}from_joint = {}\nfraction = {fraction:?}\n", head("wrist_coupling", *joint), from + 1)
-        }
-    }
+    let joint = effect.joint().map_or_else(String::new, |joint| format!("joint = {}\n", joint + 1));
+    format!("\n[[effect]]\nname = \"{}\"\n{joint}{}", effect.name(), numbers(effect))
 }
 
 /// Corrections of joints over their own angles as a table (CSV): joint, angle_deg, correction_urad.
@@ -298,4 +128,220 @@ pub fn corrections_from_csv(file: &str, text: &str, joints: usize) -> Result<Vec
     }
     let table = |(joint, rows): (usize, Vec<(f64, f64)>)| Effect::Table { joint, rows };
     Ok(rows.into_iter().enumerate().filter(|(_, rows)| !rows.is_empty()).map(table).collect())
+}
+
+impl Effect {
+    /// Its name in a robot file.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Effect::Harmonic { .. } | Effect::Table { .. } => TRANSMISSION_ERROR,
+            Effect::EncoderScale { .. } => ENCODER_SCALE,
+            Effect::Backlash { .. } | Effect::PlayByApproach { .. } => BACKLASH,
+            Effect::Friction { .. } => JOINT_FRICTION,
+            Effect::Lag { .. } => READBACK_LAG,
+            Effect::Compliance { .. } => JOINT_COMPLIANCE,
+            Effect::NonlinearStiffness { .. } => JOINT_NONLINEAR_STIFFNESS,
+            Effect::LinkFlexibility { .. } => LINK_FLEXIBILITY,
+            Effect::GravityTilt { .. } => GRAVITY_TILT,
+            Effect::Weight { .. } => WEIGHT,
+            Effect::Coupling { .. } => WRIST_COUPLING,
+        }
+    }
+}
+
+const EXPECTED: &str = "transmission_error (cycles_per_rev, sin_urad, cos_urad; or angle_deg and correction_urad), \
+                        encoder_scale (factor), backlash (play_urad, taken_up), wrist_coupling (from_joint, fraction), \
+                        readback_lag (fraction; of all joints without joint), joint_compliance (urad_per_nm), joint_nonlinear_stiffness (urad_per_nm2 or urad_per_nm3), \
+                        joint_friction (urad_per_nm), link_flexibility (urad_per_nm), gravity_tilt (urad_per_nm; without joint) or weight (at_joint, urad_per_m)";
+
+/// The section of an effect while it is read.
+struct EffectSection<'a> {
+    toml: &'a TomlText<'a>,
+    spanned: &'a Spanned<RawEffect>,
+    /// How many joints the robot has.
+    joints: usize,
+}
+
+impl EffectSection<'_> {
+    fn read(&self) -> Result<Effect> {
+        let raw = self.spanned.get_ref();
+        let joint = raw.joint.as_ref().map(|joint| self.joint("joint", joint)).transpose()?;
+        let name = raw.name.get_ref().as_str();
+        if let (READBACK_LAG, Some(fraction)) = (name, &raw.fraction) {
+            return Ok(Effect::Lag { joint, fraction: self.finite("fraction", fraction, 1.0)? });
+        }
+        if name == GRAVITY_TILT {
+            return self.gravity_tilt();
+        }
+        let Some(joint) = joint else { return self.lacks("joint") };
+        let per_nm = || self.required("urad_per_nm", &raw.urad_per_nm, URAD_PER_NM);
+        match name {
+            TRANSMISSION_ERROR => self.transmission_error(joint),
+            ENCODER_SCALE => {
+                Ok(Effect::EncoderScale { joint, factor: self.required("factor", &raw.factor, 1.0)? })
+            }
+            BACKLASH => self.backlash(joint),
+            WEIGHT => self.weight(joint),
+            JOINT_COMPLIANCE => Ok(Effect::Compliance { joint, per_nm: per_nm()? }),
+            JOINT_NONLINEAR_STIFFNESS => self.nonlinear_stiffness(joint),
+            LINK_FLEXIBILITY => Ok(Effect::LinkFlexibility { joint, per_nm: per_nm()? }),
+            JOINT_FRICTION => Ok(Effect::Friction { joint, per_nm: per_nm()? }),
+            READBACK_LAG => self.lacks("fraction"),
+            WRIST_COUPLING => self.coupling(joint),
+            _ => Err(self.toml.is("effect.name", &raw.name, EXPECTED)),
+        }
+    }
+
+    fn gravity_tilt(&self) -> Result<Effect> {
+        let raw = self.spanned.get_ref();
+        if let Some(joint) = &raw.joint {
+            let found = format!("{GRAVITY_TILT} has the key `joint`");
+            return Err(self.toml.wrong(joint, found, "no joint: the whole arm tilts"));
+        }
+        Ok(Effect::GravityTilt { per_nm: self.required("urad_per_nm", &raw.urad_per_nm, URAD_PER_NM)? })
+    }
+
+    /// A wave or a table.
+    fn transmission_error(&self, joint: usize) -> Result<Effect> {
+        let raw = self.spanned.get_ref();
+        match (&raw.cycles_per_rev, &raw.angle_deg, &raw.correction_urad) {
+            (Some(cycles), None, None) => {
+                let part = |key: &str, number: &Option<Number>| match number {
+                    Some(number) => self.finite(key, number, URAD),
+                    None => Ok(0.0),
+                };
+                Ok(Effect::Harmonic {
+                    joint,
+                    cycles_per_rev: self.finite("cycles_per_rev", cycles, 1.0)?,
+                    sine: part("sin_urad", &raw.sin_urad)?,
+                    cosine: part("cos_urad", &raw.cos_urad)?,
+                })
+            }
+            (None, Some(angles), Some(corrections)) => {
+                let numbers = |key: &str, list: &Spanned<Vec<Number>>, si: f64| -> Result<Vec<f64>> {
+                    list.get_ref().iter().map(|number| self.finite(key, number, si)).collect()
+                };
+                let rows: Vec<(f64, f64)> = numbers("angle_deg", angles, DEG)?
+                    .into_iter()
+                    .zip(numbers("correction_urad", corrections, URAD)?)
+                    .collect();
+                let is_whole = angles.get_ref().len() == corrections.get_ref().len() && !rows.is_empty();
+                match is_whole && rows.is_sorted_by(|a, b| a.0 < b.0) {
+                    true => Ok(Effect::Table { joint, rows }),
+                    false => {
+                        let expected = "ascending angles, with one correction_urad for each";
+                        Err(self.toml.wrong(angles, "effect.angle_deg is another list".into(), expected))
+                    }
+                }
+            }
+            _ => self.lacks("cycles_per_rev, or angle_deg and correction_urad"),
+        }
+    }
+
+    fn backlash(&self, joint: usize) -> Result<Effect> {
+        let raw = self.spanned.get_ref();
+        let play = self.required("play_urad", &raw.play_urad, URAD)?;
+        match &raw.taken_up {
+            None => Ok(Effect::Backlash { joint, play }),
+            Some(by) if by.get_ref() == "load" => Ok(Effect::Backlash { joint, play }),
+            Some(by) if by.get_ref() == "approach" => Ok(Effect::PlayByApproach { joint, play }),
+            Some(by) => Err(self.toml.is("effect.taken_up", by, "\"load\" or \"approach\"")),
+        }
+    }
+
+    fn weight(&self, joint: usize) -> Result<Effect> {
+        let raw = self.spanned.get_ref();
+        let per_metre = self.required("urad_per_m", &raw.urad_per_m, URAD)?;
+        let at = raw.at_joint.as_ref().map(|at| self.joint("at_joint", at)).transpose()?;
+        Ok(Effect::Weight { joint, at, per_metre })
+    }
+
+    fn nonlinear_stiffness(&self, joint: usize) -> Result<Effect> {
+        let raw = self.spanned.get_ref();
+        let (power, key, number) = match (&raw.urad_per_nm2, &raw.urad_per_nm3) {
+            (Some(number), None) => (TorquePower::Square, "urad_per_nm2", number),
+            (None, Some(number)) => (TorquePower::Cube, "urad_per_nm3", number),
+            _ => return self.lacks("urad_per_nm2, or urad_per_nm3"),
+        };
+        Ok(Effect::NonlinearStiffness { joint, power, coefficient: self.finite(key, number, URAD)? })
+    }
+
+    fn coupling(&self, joint: usize) -> Result<Effect> {
+        let raw = self.spanned.get_ref();
+        let (Some(from), Some(fraction)) = (&raw.from_joint, &raw.fraction) else {
+            return self.lacks("from_joint and fraction");
+        };
+        let from = self.joint("from_joint", from)?;
+        Ok(Effect::Coupling { from, joint, fraction: self.finite("fraction", fraction, 1.0)? })
+    }
+
+    /// A joint of the robot, from 0.
+    fn joint(&self, key: &str, number: &Spanned<usize>) -> Result<usize> {
+        match number.get_ref().checked_sub(1) {
+            Some(index) if index < self.joints => Ok(index),
+            _ => {
+                let expected = format!("a joint from 1 to {}", self.joints);
+                Err(self.toml.is(&format!("effect.{key}"), number, &expected))
+            }
+        }
+    }
+
+    /// A number, SI.
+    fn finite(&self, key: &str, number: &Number, si: f64) -> Result<f64> {
+        Ok(self.toml.finite(&format!("effect.{key}"), number)? * si)
+    }
+
+    /// A number that must be there, SI.
+    fn required(&self, key: &str, number: &Option<Number>, si: f64) -> Result<f64> {
+        match number {
+            Some(number) => self.finite(key, number, si),
+            None => self.lacks(key),
+        }
+    }
+
+    fn lacks<T>(&self, what: &str) -> Result<T> {
+        Err(self.toml.wrong(self.spanned, format!("an effect without {what}"), EXPECTED))
+    }
+}
+
+/// The keys of an effect beside its name and its joint.
+fn numbers(effect: &Effect) -> String {
+    let urad = |value: f64| in_unit(value, URAD);
+    let per_nm = |value: f64| format!("urad_per_nm = {:?}\n", in_unit(value, URAD_PER_NM));
+    match effect {
+        Effect::Harmonic { cycles_per_rev, sine, cosine, .. } => format!(
+            "cycles_per_rev = {cycles_per_rev:?}\nsin_urad = {:?}\ncos_urad = {:?}\n",
+            urad(*sine),
+            urad(*cosine)
+        ),
+        Effect::Table { rows, .. } => {
+            let angles: Vec<f64> = rows.iter().map(|row| in_unit(row.0, DEG)).collect();
+            let corrections: Vec<f64> = rows.iter().map(|row| urad(row.1)).collect();
+            format!("angle_deg = {angles:?}\ncorrection_urad = {corrections:?}\n")
+        }
+        Effect::EncoderScale { factor, .. } => format!("factor = {factor:?}\n"),
+        Effect::Backlash { play, .. } => format!("play_urad = {:?}\n", urad(*play)),
+        Effect::PlayByApproach { play, .. } => {
+            format!("play_urad = {:?}\ntaken_up = \"approach\"\n", urad(*play))
+        }
+        Effect::Lag { fraction, .. } => format!("fraction = {fraction:?}\n"),
+        Effect::Friction { per_nm: k, .. }
+        | Effect::Compliance { per_nm: k, .. }
+        | Effect::LinkFlexibility { per_nm: k, .. }
+        | Effect::GravityTilt { per_nm: k } => per_nm(*k),
+        Effect::NonlinearStiffness { power, coefficient, .. } => {
+            let key = match power {
+                TorquePower::Square => "urad_per_nm2",
+                TorquePower::Cube => "urad_per_nm3",
+            };
+            format!("{key} = {:?}\n", urad(*coefficient))
+        }
+        Effect::Weight { at, per_metre, .. } => {
+            let at = at.map_or_else(String::new, |at| format!("at_joint = {}\n", at + 1));
+            format!("{at}urad_per_m = {:?}\n", urad(*per_metre))
+        }
+        Effect::Coupling { from, fraction, .. } => {
+            format!("from_joint = {}\nfraction = {fraction:?}\n", from + 1)
+        }
+    }
 }

@@ -162,7 +162,10 @@ impl JointLawVariable {
         match self {
             JointLawVariable::Weight(_) => "g",
             JointLawVariable::Torque(_) => "τ",
-            _ => "q",
+            JointLawVariable::Angle(_)
+            | JointLawVariable::Position(_)
+            | JointLawVariable::Sum(_)
+            | JointLawVariable::Difference(_) => "q",
         }
     }
 

@@ -9,6 +9,7 @@ mod number;
 #[cfg(test)]
 mod tests;
 
+use self::number::ChangeUnit;
 pub use self::number::{Feature, NominalNumber, Part, SectionConstant};
 use super::{BendFlexibility, Joint, Pipe, Rod};
 use crate::dual::Number;
@@ -35,12 +36,11 @@ impl Nominal {
     /// Unit of the number for people, what one of it is in SI, and its value in SI; of what is
     /// known to a share the unit is a percent of the value.
     pub fn for_people(&self) -> (&'static str, f64, f64) {
-        let key = self.number.key();
         let si = 1.0 / self.number.in_unit(1.0, self.value);
-        match (key.ends_with("_percent"), key.ends_with("_g")) {
-            (true, _) => ("%", si, 100.0 * si),
-            (_, true) => ("g", si, self.value),
-            _ => ("mm", si, self.value),
+        match self.number.change_unit() {
+            ChangeUnit::Percent => ("%", si, 100.0 * si),
+            ChangeUnit::Gram => ("g", si, self.value),
+            ChangeUnit::Millimetre => ("mm", si, self.value),
         }
     }
 }
@@ -191,7 +191,7 @@ impl<T: Number> Rod<T> {
             NominalNumber::PoissonRatio(name) => Some(material(name)?.poisson_ratio),
             NominalNumber::BendFactor => match self.bend_flexibility {
                 BendFlexibility::Factor(factor) => Some(factor),
-                _ => None,
+                BendFlexibility::Beam | BendFlexibility::VonKarman | BendFlexibility::AsmeB313 => None,
             },
             NominalNumber::Mass(name) => {
                 self.masses.iter().find(|mass| mass.name == *name).map(|mass| mass.mass)
@@ -409,19 +409,39 @@ fn of_section(part: Part, section: &Section) -> Vec<NominalNumber> {
 
 /// The field of `section` that `number` names, where the section has it.
 fn dimension<'s, T: Number>(section: &'s mut Section<T>, number: &NominalNumber) -> Option<&'s mut T> {
-    match (section, number) {
-        (Section::Round(round), NominalNumber::OuterDiameter(_)) => Some(&mut round.outer_diameter),
-        (Section::Round(round), NominalNumber::InnerDiameter(_)) => Some(&mut round.inner_diameter),
-        (Section::Rectangle(rectangle), NominalNumber::Width(_)) => Some(&mut rectangle.width),
-        (Section::Rectangle(rectangle), NominalNumber::Height(_)) => Some(&mut rectangle.height),
-        (Section::Rectangle(rectangle), NominalNumber::Wall(_)) => rectangle.wall.as_mut(),
-        (Section::General(general), NominalNumber::Section(_, constant)) => Some(match constant {
+    let (round, rectangle, general) = match section {
+        Section::Round(round) => (Some(round), None, None),
+        Section::Rectangle(rectangle) => (None, Some(rectangle), None),
+        Section::General(general) => (None, None, Some(general)),
+    };
+    match number {
+        NominalNumber::OuterDiameter(_) => round.map(|round| &mut round.outer_diameter),
+        NominalNumber::InnerDiameter(_) => round.map(|round| &mut round.inner_diameter),
+        NominalNumber::Width(_) => rectangle.map(|rectangle| &mut rectangle.width),
+        NominalNumber::Height(_) => rectangle.map(|rectangle| &mut rectangle.height),
+        NominalNumber::Wall(_) => rectangle.and_then(|rectangle| rectangle.wall.as_mut()),
+        NominalNumber::Section(_, constant) => general.map(|general| match constant {
             SectionConstant::Area => &mut general.area,
             SectionConstant::Iy => &mut general.iy,
             SectionConstant::Iz => &mut general.iz,
             SectionConstant::TorsionConstant => &mut general.torsion_constant,
             SectionConstant::ShearCoefficient => &mut general.shear_coefficient,
         }),
-        _ => None,
+        NominalNumber::YoungsModulus(_)
+        | NominalNumber::ShearModulus(_)
+        | NominalNumber::Density(_)
+        | NominalNumber::ShearCoefficient(_)
+        | NominalNumber::LengthL1
+        | NominalNumber::LengthL2
+        | NominalNumber::BendRadius
+        | NominalNumber::Station(_)
+        | NominalNumber::TipMass
+        | NominalNumber::Angle
+        | NominalNumber::PoissonRatio(_)
+        | NominalNumber::BendFactor
+        | NominalNumber::Mass(_)
+        | NominalNumber::JointBending(_)
+        | NominalNumber::JointTorsion(_)
+        | NominalNumber::Ply(..) => None,
     }
 }

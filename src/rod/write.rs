@@ -5,7 +5,7 @@ use super::{BendFlexibility, Pipe, Rod, RodLaw, StandardUncertainty};
 use crate::material::Material;
 use crate::section::Section;
 use crate::toml_text::{comments, in_unit, quoted};
-use crate::units::{DEG, GPA, GRAM, MM, MPA, URAD_PER_NM};
+use crate::units::{DEG, GPA, GRAM, MM, MPA, PERCENT, URAD_PER_NM};
 
 impl Rod {
     /// This rod as a file, the format of [`Rod::from_toml`], below `above`, lines of comments.
@@ -96,8 +96,6 @@ impl Rod {
         text
     }
 }
-
-const PERCENT: f64 = 0.01;
 
 /// What a material has besides E, G and ρ and what does not follow from them.
 fn material_details(material: &Material) -> Vec<String> {

@@ -12,10 +12,10 @@ const SEEDS: usize = 12;
 
 fn forecast(campaign: &Campaign, plan: &Plan, mode: Mode) -> Forecast {
     let noise = (plan.repeatability.powi(2) / 3.0 + plan.sensor_noise.powi(2)).sqrt();
-    let budget = Budget::of(campaign, Some(noise), Some(plan.repeatability)).unwrap();
+    let budget = Budget::of(campaign, Some(noise), Some(plan.repeatability), plan.scanner_noise).unwrap();
     // clamps are known to so much in each direction
     let clamps = plan.clamp_error / 3f64.sqrt();
-    let budget = budget.with_instrument(plan.scanner_noise).with_clamps(clamps);
+    let budget = budget.with_clamps(clamps);
     let recording = &campaign.measurements;
     let poses: Vec<_> =
         (0..recording.len()).map(|row| (recording.rows[row].group, recording.joints(row).to_vec())).collect();

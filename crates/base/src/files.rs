@@ -73,14 +73,6 @@ pub fn check_free(directory: &Path, names: &[&str], existing: Existing) -> Resul
     refuse(&there.collect::<Result<Vec<_>>>()?, existing, |name, there| known.whose(name, there))
 }
 
-/// Refuses a file that [`write_new`] would refuse, before its contents are known.
-///
-/// # Errors
-/// [`Error::InTheWay`], [`Error::File`].
-pub fn check_absent(path: &Path, existing: Existing) -> Result<()> {
-    refuse(&[("", Standing::at(path)?)], existing, |_, _| Some(Whose::Kept))
-}
-
 /// Refuses to write over what was read: `inputs` by name and SHA-256, `files` as [`write_together`]
 /// takes them.
 ///

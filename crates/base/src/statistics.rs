@@ -24,6 +24,9 @@ use crate::error::{Error, Result};
 /// deviation: 1/Φ⁻¹(3/4), here to full precision (quoted as 1.4826).
 pub const MAD_TO_SD: f64 = 1.482_602_218_505_602;
 
+/// Half of a 95 % interval of a normal number, in standard deviations: Φ⁻¹(0.975).
+pub const HALF_95: f64 = 1.959964;
+
 /// The t below which Student's t with `dof` degrees of freedom falls with the probability `p`.
 ///
 /// # Errors

@@ -25,6 +25,10 @@ pub const URAD: f64 = 1e-6;
 pub const URAD_PER_NM: f64 = 1e-6;
 /// Hour in seconds.
 pub const HOUR: f64 = 3600.0;
+/// Per cent as a share.
+pub const PERCENT: f64 = 0.01;
+/// Lowest temperature that there is, °C.
+pub const ABSOLUTE_ZERO_C: f64 = -273.15;
 
 /// A unit in which a number is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -135,6 +139,19 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     let number = format!("{value:.decimals$}");
     let is_zero = !number.chars().any(|c| ('1'..='9').contains(&c));
     if is_zero { number.trim_start_matches('-').to_owned() } else { number }
+}
+
+/// Words at the beginning of a sentence.
+pub fn capital(words: impl ToString) -> String {
+    let words = words.to_string();
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// The words of a sentence in the midst of another one.
+pub fn uncapital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }
 
 /// `33.02 ± 0.18`: the uncertainty to two significant digits, the value to the same place; without

@@ -12,9 +12,8 @@ use crate::error::{Error, Place, Result};
 use crate::limits;
 use crate::robot::Robot;
 use crate::spatial::Pose;
-use crate::units::MM;
+use crate::units::{ABSOLUTE_ZERO_C, MM};
 
-const ABSOLUTE_ZERO_C: f64 = -273.15;
 /// Fewest poses that place a station.
 const LEAST_AT_STATION: usize = 3;
 

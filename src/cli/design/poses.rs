@@ -156,8 +156,9 @@ impl Expected {
 
     /// What is wrong while the robot is calibrated and used.
     pub fn budget(&self, campaign: &Campaign) -> Result<Budget> {
-        let [noise, repeatability] = [self.noise_um, self.repeatability_um].map(|um| um.map(|um| um * UM));
-        Ok(Budget::of(campaign, noise, repeatability)?.with_instrument(self.instrument_um * UM))
+        let metres = |um: f64| um * UM;
+        let [noise, repeatability] = [self.noise_um, self.repeatability_um].map(|um| um.map(metres));
+        Budget::of(campaign, noise, repeatability, metres(self.instrument_um))
     }
 
     /// True where something is stated.

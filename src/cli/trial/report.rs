@@ -9,6 +9,7 @@ use rodcal::report::runs::name_and_unit;
 use rodcal::report::table::{Column, Table};
 use rodcal::report::{Block, Card, Report, Section, Tone};
 use rodcal::units::significant;
+use rodcal_trial::ground_truth::Concealed;
 use rodcal_trial::score::{Failure, Measured, Part, Rate, Reached, Score, Verdict};
 
 /// Half the size of a circle that stands for all cases of a row, CSS pixels.
@@ -326,24 +327,22 @@ fn power(suite: &str, part: &Part) -> Option<Figure> {
     })
 }
 
-/// "friction at y (friction 0.52 N)" of `friction at y (friction_n 5.200e-1)`.
-fn with_units(truth: &str) -> String {
-    let truth = truth.trim_end_matches(" ()");
-    let Some((what, numbers)) = truth.strip_suffix(')').and_then(|truth| truth.split_once(" (")) else {
-        return spaced(&truth);
-    };
-    let said = numbers.split(", ").map(|number| {
-        let (name, value) = number.rsplit_once(' ').unwrap_or((number, ""));
-        let (words, unit) = name_and_unit(name);
-        let value = value.parse().map_or_else(|_| value.to_owned(), |value| significant(value, 3));
-        format!("{words} {value} {unit}").trim_end().to_owned()
+/// "friction at y (force 0.520 N)".
+fn with_units(truth: &Concealed) -> String {
+    let what = spaced(&format!("{} at {}", truth.effect, truth.location));
+    let said = truth.parameters.iter().map(|parameter| {
+        let (words, unit) = name_and_unit(&parameter.name);
+        format!("{words} {} {unit}", significant(parameter.value, 3)).trim_end().to_owned()
     });
-    format!("{} ({})", spaced(&what), said.collect::<Vec<_>>().join(", "))
+    match said.collect::<Vec<_>>() {
+        numbers if numbers.is_empty() => what,
+        numbers => format!("{what} ({})", numbers.join(", ")),
+    }
 }
 
 fn failures(suite: &str, failures: &[Failure]) -> Table {
     let row = |failure: &Failure| {
-        let truth: Vec<String> = failure.truth.iter().map(|truth| with_units(truth)).collect();
+        let truth: Vec<String> = failure.truth.iter().map(with_units).collect();
         let said = spaced(&failure.said.join("; "));
         vec![failure.case.clone(), failure.what.to_owned(), truth.join("; "), said]
     };
@@ -360,19 +359,32 @@ fn failures(suite: &str, failures: &[Failure]) -> Table {
 
 #[cfg(test)]
 mod tests {
+    use rodcal_trial::effect_name::EffectName;
+    use rodcal_trial::ground_truth::Parameter;
+
     use super::*;
 
     #[test]
     fn what_was_concealed_is_said_in_words_with_units() {
-        for (raw, words) in [
+        let truth = |effect: EffectName, location: &str, parameters: &[(&str, f64)]| {
+            let parameter =
+                |&(name, value): &(&str, f64)| Parameter { name: name.into(), value, with_numbers: None };
+            let parameters = parameters.iter().map(parameter).collect();
+            let concealed = Concealed::mistake(effect, Default::default(), parameters);
+            Concealed { location: location.into(), ..concealed }
+        };
+        for (truth, words) in [
             (
-                "joint_compliance at station 3 (bending_urad_per_nm 5.352e1)",
+                truth(EffectName::JointCompliance, "station 3", &[("bending_urad_per_nm", 53.52)]),
                 "joint compliance at station 3 (bending 53.5 µrad/(N·m))",
             ),
-            ("backlash at y (lost_um 2.500e0, ratio 1.000e-1)", "backlash at y (lost 2.50 µm, ratio 0.100)"),
-            ("copy_mistake at row 3 ()", "copy mistake at row 3"),
+            (
+                truth(EffectName::Backlash, "y", &[("lost_um", 2.5), ("ratio", 0.1)]),
+                "backlash at y (lost 2.50 µm, ratio 0.100)",
+            ),
+            (truth(EffectName::CopyMistake, "row 3", &[]), "copy mistake at row 3"),
         ] {
-            assert_eq!(with_units(raw), words);
+            assert_eq!(with_units(&truth), words);
         }
     }
 }

@@ -32,17 +32,23 @@ pub struct Budget {
 
 impl Budget {
     /// Of a campaign: the noise that is given here, or that the file states, or that its recording
-    /// shows, or else that of the paper; `repeatability` (m) likewise.
+    /// shows, or else that of the paper; `repeatability` (m) likewise; and the `instrument` (m)
+    /// that measures the unseen poses, 0 for none.
     ///
     /// # Errors
     /// What the calibration of a recording refuses.
-    pub fn of(campaign: &Campaign, noise: Option<f64>, repeatability: Option<f64>) -> Result<Budget> {
+    pub fn of(
+        campaign: &Campaign,
+        noise: Option<f64>,
+        repeatability: Option<f64>,
+        instrument: f64,
+    ) -> Result<Budget> {
         let mut budget = Budget {
             noise: 0.0,
             noise_source: String::new(),
             clamps: campaign.clamp_uncertainty.unwrap_or(0.0),
             repeatability: repeatability.unwrap_or(REPEATABILITY),
-            instrument: 0.0,
+            instrument,
             drawing_scale: 1.0,
             seed: 1,
         };
@@ -85,11 +91,6 @@ impl Budget {
     /// With clamps whose places are known to this standard deviation of a coordinate, m.
     pub fn with_clamps(self, clamps: f64) -> Budget {
         Budget { clamps, ..self }
-    }
-
-    /// With unseen poses measured by an instrument of this root mean square error, m.
-    pub fn with_instrument(self, instrument: f64) -> Budget {
-        Budget { instrument, ..self }
     }
 
     /// With every random number from this seed.

@@ -133,7 +133,7 @@ impl<'c> PoseStudy<'c> {
     /// use rodcal::prelude::*;
     ///
     /// let campaign = Campaign::read("campaigns/tx90-5/campaign.toml".as_ref())?;
-    /// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6))?;
+    /// let budget = Budget::of(&campaign, Some(17.6e-6), Some(30e-6), 0.0)?;
     /// let wanted = Wanted::new(20, PoseCriterion::O1, Source::Generated(100));
     /// let study = PoseStudy::new(&campaign, wanted, budget, &|_| {})?;
     /// assert_eq!((study.chosen.len(), study.places.len()), (20, 5));
@@ -337,7 +337,7 @@ mod tests {
     use super::*;
 
     fn study(campaign: &Campaign, count: usize, criterion: PoseCriterion) -> PoseStudy<'_> {
-        let budget = Budget::of(campaign, Some(17.6e-6), Some(30e-6)).unwrap();
+        let budget = Budget::of(campaign, Some(17.6e-6), Some(30e-6), 0.0).unwrap();
         let wanted = Wanted {
             count,
             criterion,

@@ -16,6 +16,7 @@ use self::limits::{limits, noisy};
 use self::memory::check_memory;
 use self::prepared::{FirstLook, Prepared};
 use super::effects::contact::is_of_clamps;
+use super::effects::gear::gear_joint;
 use super::effects::{EVERY_ROW, registry};
 use super::laws::sites::sites;
 use super::model::CalibrationModel;
@@ -226,16 +227,11 @@ impl CalibrationDiagnosis<'_> {
 
     /// The size of the whole error of the gear that a finding is about; nothing of any other.
     fn whole_error(&self, finding: &Finding) -> Vec<Estimate> {
-        let Some((joint, part)) = self.gear_joint(finding).zip(finding.parts.first()) else {
+        let Some((joint, part)) = gear_joint(finding).zip(finding.parts.first()) else {
             return Vec::new();
         };
         let angles = self.model.angles(joint);
         self.gear(joint).map_or_else(Vec::new, |curve| curve.estimates(&angles, part.coverage_factor))
-    }
-
-    /// The joint, from 0, whose gear a finding is about.
-    pub fn gear_joint(&self, finding: &Finding) -> Option<usize> {
-        self.model.gear_of(finding.parts.first()?).map(|gear| gear.joint())
     }
 
     /// What happened at single poses, in the order of the findings.

@@ -194,10 +194,3 @@ fn size(finding: &Finding, unit: f64) -> Quantity {
     let nothing = Quantity { value: f64::NAN, low: f64::NAN, high: f64::NAN };
     finding.parts.first().map_or(nothing, |part| super::model::vector::size(part, unit))
 }
-
-/// A place at the beginning of a sentence.
-fn capital(place: &impl ToString) -> String {
-    let place = place.to_string();
-    let mut letters = place.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}

@@ -41,6 +41,7 @@ use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
 use super::write_back::apply::{Applied, apply};
 use crate::calibration::campaign::{Campaign, FileNames};
 use crate::calibration::{Compensation, Mode, Options, Summary, calibrate};
+use crate::diagnosis::Suspicion;
 use crate::error::Result;
 use crate::inference::Finding;
 use crate::robot::Robot;
@@ -61,16 +62,6 @@ pub struct Neighbours {
     pub rods: Vec<(String, Rod)>,
     /// Robots, by their files, with the text of those.
     pub robots: Vec<(String, Robot, String)>,
-}
-
-/// A mistake that a campaign seems to hold, in one line.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Suspicion {
-    /// `likely mistake in q4_deg: its sign is wrong; multiply q4_deg by −1 (…)`.
-    pub description: String,
-    /// False for a first guess of base or tip, which a calibration corrects.
-    pub spoils_fit: bool,
 }
 
 /// A campaign without the mistakes that were found in it.
@@ -131,8 +122,8 @@ pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Opti
     Ok(mended.confirmed(campaign, mode))
 }
 
-/// One line for each mistake that `campaign` seems to hold, for those who do not ask for a
-/// diagnosis.
+/// Each mistake that `campaign` seems to hold, for those who do not ask for a diagnosis: `likely
+/// mistake in q4_deg: its sign is wrong; multiply q4_deg by −1`.
 ///
 /// ```
 /// use rodcal::diagnosis::calibration::suspected;

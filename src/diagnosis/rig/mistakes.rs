@@ -41,13 +41,13 @@ pub(super) use self::lookalikes::{is_one_factor, lookalikes};
 pub(super) use self::mended::Mended;
 pub(super) use self::rods::OtherRod;
 pub(super) use self::search::{ODDS, RARE};
+use crate::diagnosis::Suspicion;
 use crate::error::Result;
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
 
-/// One line for each mistake that `readings` seem to hold, for those who do not ask for a
-/// diagnosis: `load_n looks like kilograms: the rod seems 9.8 times softer than its file; rodcal
-/// diagnose rig says more`.
+/// Each mistake that `readings` seem to hold, for those who do not ask for a diagnosis: `load_n
+/// looks like kilograms: the rod seems 9.8 times softer than its file`.
 ///
 /// ```
 /// use rodcal::diagnosis::rig::suspected;
@@ -62,7 +62,7 @@ use crate::rod::Rod;
 ///
 /// # Errors
 /// What the beam model refuses of the rod.
-pub fn suspected(readings: &Readings, rod: Option<&Rod>) -> Result<Vec<String>> {
+pub fn suspected(readings: &Readings, rod: Option<&Rod>) -> Result<Vec<Suspicion>> {
     Ok(mended(readings, rod, &[])?.suspicions)
 }
 

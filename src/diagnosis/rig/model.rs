@@ -134,12 +134,3 @@ impl RigModel {
         }
     }
 }
-
-/// True for a parameter that does nothing where the first of its effect does nothing.
-pub(super) fn is_dependent(action: &Action) -> bool {
-    match action {
-        Action::Onset(_) | Action::Presliding | Action::SliderPlay => true,
-        Action::Own(_, k) => *k > 0,
-        _ => false,
-    }
-}

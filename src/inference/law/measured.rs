@@ -8,7 +8,7 @@ use super::remainder::Remainder;
 use super::scan::{SAME, Scanned};
 use super::site::Site;
 use crate::inference::search::selection::APART;
-use crate::statistics::student_t_quantile;
+use crate::statistics::{HALF_95, student_t_quantile};
 
 /// Values of s by which its posterior counts in the amplitudes' intervals.
 const DRAWS: usize = 24;
@@ -39,7 +39,7 @@ impl Measured {
         let fitted = remainder.fit(&columns.columns);
         let mode: Vec<f64> = fitted.factors.iter().zip(&columns.amplitudes).map(|(f, a)| f * a).collect();
         let (mean, covariance) = moments(remainder, site, law, size);
-        let factor = student_t_quantile(0.975, fitted.degrees_of_freedom).unwrap_or(1.96);
+        let factor = student_t_quantile(0.975, fitted.degrees_of_freedom).unwrap_or(HALF_95);
         let amplitude = |k: usize| {
             let (symbol, name, unit, si) = names[k].clone();
             let half = factor * covariance[(k, k)].max(0.0).sqrt();

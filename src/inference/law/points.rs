@@ -8,9 +8,13 @@ use super::{Form, Site};
 /// sign of the last move.
 #[derive(Debug, Clone, Copy)]
 pub struct GrammarPoint {
+    /// Of the law.
     pub place: &'static str,
+    /// Name of its variable.
     pub variable: &'static str,
+    /// Its form.
     pub form: Form,
+    /// True where it has the sign of the last move.
     pub sides: bool,
 }
 

@@ -130,6 +130,12 @@ pub trait ForwardModel: Sync {
         parts.iter().flat_map(|part| part.estimates.clone()).collect()
     }
 
+    /// Which of [`ForwardModel::estimates`] is the place of these parts, where that is a number
+    /// that is fitted.
+    fn place_among_estimates(&self, _: &[FindingPart]) -> Option<usize> {
+        None
+    }
+
     /// A finding in words.
     fn describe(&self, finding: &Finding) -> Description {
         let observed = format!("{} at {}", finding.effect.title(), finding.location);

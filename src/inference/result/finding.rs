@@ -18,6 +18,8 @@ pub struct Finding {
     pub location: Location,
     /// What it amounts to.
     pub estimates: Vec<Estimate>,
+    /// Which of these is its place, where that is a number that was fitted.
+    pub place: Option<usize>,
     /// The finding in words, with its numbers.
     pub description: Description,
     /// What explains it as well, likeliest first, its own places included.
@@ -89,9 +91,9 @@ pub struct Rival {
     pub effect: &'static Effect,
     /// Where it is.
     pub location: Location,
-    /// The candidate with its values.
-    pub term: Term,
-    /// The whole hypothesis with it instead, its term last.
+    /// The candidate with its values; `None` of what is no candidate of the model.
+    pub term: Option<Term>,
+    /// The whole hypothesis with it instead, its term last; without terms where it has none.
     pub hypothesis: Hypothesis,
     /// How much less probable that hypothesis is: odds, 1 for as probable. Of another effect at its
     /// likeliest place: how much less probable it is that the effect is anywhere.
@@ -110,8 +112,7 @@ impl Rival {
             background_covariance: DMatrix::zeros(0, 0),
             determined: 0.0,
         };
-        let term = Term { candidate: usize::MAX, values: Vec::new() };
-        Rival { effect, location, term, hypothesis, odds }
+        Rival { effect, location, term: None, hypothesis, odds }
     }
 }
 
@@ -147,6 +148,7 @@ impl Finding {
             effect,
             location,
             estimates,
+            place: None,
             description: Description::default(),
             rivals: Vec::new(),
             p_value: part.p_value,
@@ -170,6 +172,7 @@ impl Finding {
             effect,
             location,
             estimates,
+            place: None,
             description,
             rivals: Vec::new(),
             p_value: 0.0,
@@ -201,6 +204,12 @@ impl Finding {
             log_odds: DECISIVE,
             separates_from: separated.map(|rival| (rival.effect, rival.location.place())).collect(),
         })
+    }
+
+    /// True of what the model has terms for; false of a mistake, or a frame that moved, which was
+    /// undone before there was a model.
+    pub fn is_of_model(&self) -> bool {
+        !self.parts.is_empty()
     }
 
     /// What sort of thing it is.
@@ -240,8 +249,7 @@ impl Finding {
     /// The estimate of its place, where that is a number that was fitted: where it is, and between
     /// which ends.
     pub fn place_estimate(&self) -> Option<&Estimate> {
-        let Location::Station(at) = self.location else { return None };
-        self.estimates.iter().find(|estimate| estimate.value == at)
+        self.estimates.get(self.place?)
     }
 
     /// Other places where the same effect may be as well, likeliest first.

@@ -54,6 +54,7 @@ pub fn findings(
             }
         };
         finding.estimates = model.estimates(&finding.parts, hypothesis);
+        finding.place = model.place_among_estimates(&finding.parts);
         finding.rivals = finding.parts.iter().flat_map(|part| part.rivals.clone()).collect();
         finding.rivals.sort_by(|a, b| a.odds.total_cmp(&b.odds));
         finding.found_in_folds = held_out.map(|held_out| held_out.found(model.candidates(), *theme));

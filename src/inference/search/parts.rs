@@ -9,7 +9,7 @@ use crate::inference::{
     Candidate, Effect, Estimate, FindingPart, ForwardModel, Hypothesis, Kind, Location, Parameter, Rival,
     Term,
 };
-use crate::statistics::{chi_squared_survival, student_t_quantile};
+use crate::statistics::{HALF_95, chi_squared_survival, student_t_quantile};
 
 /// So many of the effects that may be there besides count for an interval.
 const AVERAGED: usize = 8;
@@ -79,7 +79,7 @@ pub fn part(
             let odds = (hypothesis.log_probability - other.log_probability).exp() * factor;
             let own = other.terms.last()?.clone();
             let (effect, location) = (candidates[index].effect, model.location(&own));
-            Some(Rival { effect, location, term: own, hypothesis: other, odds })
+            Some(Rival { effect, location, term: Some(own), hypothesis: other, odds })
         })
         .filter(|rival| rival.odds < APART)
         .collect();
@@ -88,8 +88,9 @@ pub fn part(
     let is_along = |location: &Location| matches!(location, Location::Named(_) | Location::Station(_));
     for rival in rivals.iter().filter(|rival| rival.effect == own && is_along(&rival.location)) {
         if is_along(&candidates[term.candidate].location) {
-            let at = rival.hypothesis.covariance.nrows() - rival.term.values.len();
-            widen(&mut estimates, intervals(model, &rival.hypothesis, &rival.term, at, coverage_factor));
+            let Some(other) = &rival.term else { continue };
+            let at = rival.hypothesis.covariance.nrows() - other.values.len();
+            widen(&mut estimates, intervals(model, &rival.hypothesis, other, at, coverage_factor));
         }
     }
     let gained = search.deviance(&rest, hypothesis.sigma) - search.deviance(hypothesis, hypothesis.sigma);
@@ -131,7 +132,7 @@ fn in_many_places(candidates: &[Candidate], additions: &[f64]) -> Vec<(usize, f6
 /// leaves.
 pub fn coverage_factor_of(search: &Search, hypothesis: &Hypothesis) -> f64 {
     let degrees_of_freedom = (search.degrees_of_freedom() as f64 - hypothesis.determined).max(1.0);
-    student_t_quantile(0.975, degrees_of_freedom).unwrap_or(1.96)
+    student_t_quantile(0.975, degrees_of_freedom).unwrap_or(HALF_95)
 }
 
 /// Where the parameters of a term begin among all of a hypothesis.

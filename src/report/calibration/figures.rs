@@ -11,10 +11,8 @@ use crate::report::pictures::calibration::{
     residual_vectors, residuals_against, residuals_by_group,
 };
 use crate::robot::{Parameter, ParameterGroup};
+use crate::statistics::HALF_95;
 use crate::units::{DEG, MM, UM, URAD};
-
-/// Width of a 95 % interval in standard errors.
-const INTERVAL: f64 = 1.96;
 
 fn errors_mm(errors: &[f64]) -> Vec<f64> {
     errors.iter().map(|error| error / MM).collect()
@@ -151,7 +149,7 @@ pub(super) fn corrections(calibration: &Calibration) -> Figure {
             .filter(|estimate| CorrectionKind::of(estimate.parameter) == Some(kind))
             .map(|estimate| {
                 let correction = (estimate.value - estimate.nominal) / unit;
-                let half = estimate.std_error.map(|error| INTERVAL * error / unit);
+                let half = estimate.std_error.map(|error| HALF_95 * error / unit);
                 ParameterCorrection {
                     name: estimate.parameter.description(),
                     correction,

@@ -3,10 +3,9 @@
 use nalgebra::Matrix3;
 
 use crate::compliance::{Mode, Sensitivity, Study};
+use crate::statistics::HALF_95;
 use crate::units::{UM, significant, with_uncertainty};
 
-/// Half of the 95 % interval of a normal number, in standard deviations.
-pub(super) const INTERVAL: f64 = 1.959964;
 /// Digits of a figure whose uncertainty is not known.
 const DIGITS: usize = 4;
 
@@ -35,7 +34,7 @@ impl Known {
                 Some(slope(one) * nominal.standard_uncertainty)
             };
             let shifts = study.sensitivities.iter().filter(|_| is_known).filter_map(shift);
-            INTERVAL * shifts.map(|shift| shift * shift).sum::<f64>().sqrt()
+            HALF_95 * shifts.map(|shift| shift * shift).sum::<f64>().sqrt()
         };
         let column = |matrix: &Matrix3<f64>, slope: &dyn Fn(&Sensitivity) -> Matrix3<f64>| {
             let (at, norm) = largest_column(matrix);

@@ -3,12 +3,12 @@
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
-use super::INTERVAL;
 use super::numbers::{DIGITS, in_um, rows};
 use crate::compliance::{Mode, Study};
 use crate::report::Block;
 use crate::report::table::{Column, Table};
 use crate::rod::{LawConstant, RodLaw};
+use crate::statistics::HALF_95;
 use crate::units::{UM, significant, with_uncertainty};
 
 /// All laws of the file, those that the numbers hold with the compliance over the load; null
@@ -78,7 +78,7 @@ pub fn blocks(study: &Study) -> Vec<Block> {
         let secant = study.laws.secant(&study.linear, load);
         let mut cells = vec![significant(load, 3)];
         let u = study.laws.secant_uncertainty(&study.linear, load).force.diagonal();
-        let with_u = |(entry, u): (&f64, &f64)| with_uncertainty(in_um(*entry), INTERVAL * in_um(*u), DIGITS);
+        let with_u = |(entry, u): (&f64, &f64)| with_uncertainty(in_um(*entry), HALF_95 * in_um(*u), DIGITS);
         cells.extend(secant.force.diagonal().iter().zip(u.iter()).map(with_u));
         cells.push(if is_beyond(study, load) { "beyond what was recorded".into() } else { String::new() });
         table.row(cells);

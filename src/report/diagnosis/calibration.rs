@@ -7,17 +7,14 @@ mod joints;
 use serde_json::{Value, json};
 
 use self::distances::{Distances, distances_json, mean};
-use self::joints::gear_of;
 use super::headline::um;
 use super::remainder::{Remainder, Sample};
 use super::subject::{Errors, LawNote, LawSubject, Subject};
 use super::{json as whole_json, report as whole_report};
 use crate::calibration::campaign::{self, Targets};
 use crate::calibration::{MOST_SCATTER, Warning};
-use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, law_destination, remark};
-use crate::inference::{
-    Finding, FindingPart, ForwardModel, Kind, Location, Plan, PosePlan, ShownBy, Variable, WrittenTo,
-};
+use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, GearError, law_destination, remark};
+use crate::inference::{Finding, ForwardModel, Kind, Location, Plan, PosePlan, ShownBy, Variable, WrittenTo};
 use crate::report::calibration::warnings as of_calibration;
 use crate::report::{Block, Report, Section};
 use crate::robot::{Motion, is_urdf};
@@ -136,7 +133,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
             ("as_recorded", json!(model.recorded.map(|recorded| distances_json(&recorded)))),
         ],
         of_findings: diagnosis.findings.iter().map(more_of).collect(),
-        details: diagnosis.findings.iter().map(|finding| details(found, finding)).collect(),
+        details: diagnosis.findings.iter().map(details).collect(),
         sessions: (
             "Each clamp or placement predicted from the others, the search for effects included; rms of a coordinate, \
              about the socket's fitted position where that is unknown.",
@@ -209,7 +206,7 @@ fn far_from_file(found: &CalibrationDiagnosis) -> Option<String> {
 /// Where `--apply` writes a finding; `None` where no file has a place for it.
 fn destination(finding: &Finding) -> Option<&'static str> {
     match finding.written_to {
-        WrittenTo::Model | WrittenTo::Recording if finding.parts.is_empty() => Some("campaign"),
+        WrittenTo::Model | WrittenTo::Recording if !finding.is_of_model() => Some("campaign"),
         WrittenTo::Model => Some("robot"),
         WrittenTo::Recording => Some("measurements"),
         WrittenTo::Nowhere => None,
@@ -260,8 +257,8 @@ pub fn announced(report: &mut Report, found: &CalibrationDiagnosis) {
 }
 
 /// A gear's shape takes several terms.
-fn details(found: &CalibrationDiagnosis, finding: &Finding) -> String {
-    match gear_of(found, finding).is_some() && finding.parts.len() > 1 {
+fn details(finding: &Finding) -> String {
+    match GearError::of(finding).is_some() && finding.parts.len() > 1 {
         true => format!(" Its shape has {} terms.", finding.parts.len()),
         false => String::new(),
     }
@@ -271,23 +268,16 @@ fn details(found: &CalibrationDiagnosis, finding: &Finding) -> String {
 /// its whole error.
 fn more_of(finding: &Finding) -> Vec<(&'static str, Value)> {
     let mut more = vec![("written_to", destination(finding).map_or(Value::Null, Value::from))];
-    let sizes =
-        [("rms_urad", "recorded_rms_urad"), ("half_peak_to_peak_urad", "recorded_half_peak_to_peak_urad")];
-    let sizes = sizes.map(|(key, name)| Some((key, json!(finding.quantity(name)?.value))));
-    more.extend(sizes.into_iter().flatten());
-    if more.len() > 1 {
-        let names = ["cycles_per_rev", "second_cycles_per_rev"];
-        let cycles = |part: &FindingPart| {
-            let waves = part.estimates.iter().filter(|estimate| names.contains(&estimate.name.as_str()));
-            match waves.map(|estimate| estimate.value).collect::<Vec<_>>()[..] {
-                [] => Value::Null,
-                [cycles] => json!(cycles),
-                ref several => json!(several),
-            }
-        };
-        let of_parts: Vec<Value> = finding.parts.iter().map(cycles).collect();
-        more.push(("cycles_per_rev_of_parts", json!(of_parts)));
-    }
+    let Some(gear) = GearError::of(finding) else { return more };
+    let sizes = [("rms_urad", gear.rms), ("half_peak_to_peak_urad", gear.half_peak_to_peak)];
+    more.extend(sizes.into_iter().filter_map(|(key, size)| Some((key, json!(size?.value)))));
+    let cycles = |waves: &Vec<f64>| match waves[..] {
+        [] => Value::Null,
+        [cycles] => json!(cycles),
+        ref several => json!(several),
+    };
+    let of_parts: Vec<Value> = gear.cycles_per_rev_of_parts.iter().map(cycles).collect();
+    more.push(("cycles_per_rev_of_parts", json!(of_parts)));
     more
 }
 

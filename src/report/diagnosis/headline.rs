@@ -3,7 +3,7 @@
 use super::subject::Subject;
 use crate::diagnosis::Limitation;
 use crate::inference::{Diagnosis, Finding, Kind, Location, WrittenTo};
-use crate::units::{MM, UM, significant};
+use crate::units::{MM, UM, capital, significant, uncapital};
 
 /// So many findings are said in full; more are named.
 const IN_FULL: usize = 2;
@@ -40,13 +40,13 @@ fn answer(subject: &Subject) -> String {
     let nominal = subject.nominal.as_ref().map_or_else(String::new, |words| format!(" {words}"));
     if findings.is_empty() {
         return match remains {
-            Some(remains) => format!("{remains}{nominal} {}", capital(&scatter(subject))),
+            Some(remains) => format!("{remains}{nominal} {}", capital(scatter(subject))),
             None => format!(
                 "{}: {}the residual, {} µm{}, is {}.{}",
                 subject.agrees,
                 match nominal.trim() {
                     "" => String::new(),
-                    words => beginning_lower(words).trim_end_matches('.').to_owned() + "; ",
+                    words => uncapital(words).trim_end_matches('.').to_owned() + "; ",
                 },
                 um(diagnosis.error_of_others()),
                 subject.per,
@@ -124,17 +124,6 @@ fn zeros(diagnosis: &Diagnosis) -> Option<String> {
         um(own * ratio.sqrt()),
         um(own)
     ))
-}
-
-/// What follows a colon.
-fn beginning_lower(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
-}
-
-pub fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// False for a mistake that nothing can undo but another recording.

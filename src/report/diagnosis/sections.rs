@@ -1,12 +1,13 @@
 //! The body of a diagnosis' report, of a rig or of a calibration.
 
-use super::headline::{RIVALS_SAID, capital, cause_at, is_scatter_estimated, is_undone, sentence, size, um};
+use super::headline::{RIVALS_SAID, cause_at, is_scatter_estimated, is_undone, sentence, size, um};
 use super::hidden::hidden;
 use super::law;
 use super::subject::Subject;
 use super::tables::{alternatives, evidence, held_out_section, locate, named, parameters, replication};
 use crate::inference::{Finding, Kind};
 use crate::report::{Block, Section};
+use crate::units::capital;
 
 pub fn all(subject: &mut Subject) -> Vec<Section> {
     let mut sections = vec![findings(subject), location(subject)];

@@ -10,11 +10,9 @@ use crate::rig::line::{Line, Point};
 use crate::rig::readings::Phase;
 use crate::rig::{Fit, Measured};
 use crate::rod::Rod;
-use crate::statistics::Estimate;
+use crate::statistics::{Estimate, HALF_95};
 use crate::units::UM;
 
-/// Width of a 95 % interval of a model, in standard uncertainties.
-const INTERVAL: f64 = 1.96;
 /// Points of a band.
 const POINTS: usize = 16;
 
@@ -126,7 +124,7 @@ fn panel(index: usize, fit: &Fit, rod: Option<&Rod>, uncertainty: &Uncertainty) 
     let mut lines = Vec::new();
     let mut model = |label: &str, slope: f64, uncertainty: Option<Compliance>| {
         let band = uncertainty.filter(|_| is_at_tip).map(|u| {
-            let half = INTERVAL * u.force[entry];
+            let half = HALF_95 * u.force[entry];
             let edge = |load: f64, slope: f64| sign * slope * load / UM;
             let around = |load: f64| {
                 let (a, b) = (edge(load, slope - half), edge(load, slope + half));

@@ -1,6 +1,6 @@
 //! What differs between a run and the first one.
 
-use super::run::{Quantity, Run};
+use super::run::{Precedence, Quantity, Run};
 use crate::error::Result;
 use crate::statistics::student_t_two_sided_p;
 
@@ -44,6 +44,8 @@ pub struct Change {
     /// Difference over its standard error is larger than chance allows; nothing where that cannot
     /// be told.
     pub is_significant: Option<bool>,
+    /// Which of several errors counts.
+    pub precedence: Precedence,
 }
 
 /// A run against the first one.
@@ -192,6 +194,7 @@ fn changes(first: &[Quantity], other: &[Quantity]) -> Vec<Change> {
             // s² = s₁² + s₂²
             std_error: errors.map(|(a, b)| a.hypot(b)),
             is_significant: None,
+            precedence: values.iter().flatten().map(|q| q.precedence).min().unwrap_or(Precedence::Other),
             values,
         }
     };

@@ -4,6 +4,7 @@ use super::compared::Runs;
 use super::tables::{commands, of_pair, shown};
 use super::{Change, Difference, Run, State};
 use crate::report::{Card, Report, Tone};
+use crate::units::capital;
 
 /// The report of `rodcal compare-runs`.
 pub fn report(runs: &Runs) -> Report {
@@ -79,13 +80,8 @@ fn findings_said(difference: &Difference) -> Option<String> {
 
 /// The error that counts: at poses or readings that the fit has not seen, where there are some.
 fn main_error(difference: &Difference) -> Option<&Change> {
-    let both = || difference.errors.iter().filter(|change| change.difference.is_some());
-    let unseen =
-        |start: &str| both().find(|change| change.name.starts_with(start) && change.name.ends_with("mean"));
-    unseen("error at validation poses")
-        .or_else(|| unseen("error at held-out poses"))
-        .or_else(|| both().find(|change| change.name == "held-out rms with findings"))
-        .or_else(|| both().next())
+    let both = difference.errors.iter().filter(|change| change.difference.is_some());
+    both.min_by_key(|change| change.precedence)
 }
 
 fn cards(runs: &Runs, other: &Run, difference: &Difference) -> Vec<Card> {
@@ -117,11 +113,6 @@ fn cards(runs: &Runs, other: &Run, difference: &Difference) -> Vec<Card> {
     }
     cards.extend(findings_said(difference).map(|said| Card::new("Findings", said, against)));
     cards
-}
-
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn warnings(runs: &Runs) -> Vec<String> {

@@ -4,13 +4,12 @@ use serde_json::Value;
 
 use crate::error::{Error, Place, Result};
 use crate::limits;
+use crate::statistics::HALF_95;
 
 /// Commands that have commands of their own.
 const FAMILIES: [&str; 4] = ["rig", "design", "diagnose", "trial"];
 /// Degrees of freedom where the result does not say: a normal distribution.
 const MANY: f64 = 1e9;
-/// Half of a 95 % interval in standard errors of a normal distribution.
-const HALF_95: f64 = 1.959_963_984_540_054;
 
 /// What a run found.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,6 +51,22 @@ pub struct Quantity {
     pub std_error: Option<f64>,
     /// Degrees of freedom of the standard error; very many where the result does not say.
     pub dof: f64,
+    /// Which of several errors counts.
+    pub precedence: Precedence,
+}
+
+/// Which of several errors counts: the first of these that both runs have, for it is of poses or
+/// readings that the fit has not seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Precedence {
+    /// The mean at validation poses.
+    Validation,
+    /// The mean at held-out poses.
+    HeldOutPoses,
+    /// What findings leave of held-out data.
+    HeldOutWithFindings,
+    /// Any other number.
+    Other,
 }
 
 impl Run {
@@ -95,7 +110,7 @@ impl Run {
             run.read(&prefix, mode);
         }
         if run.parameters.is_empty() && run.errors.is_empty() {
-            run.parameters = figures(&json, "");
+            run.parameters = figures(&json, "", Precedence::Other);
         }
         Ok(run)
     }
@@ -111,30 +126,36 @@ impl Run {
             self.findings.push(name);
         }
         self.errors.extend(items(&json["slopes"]).filter_map(scatter));
-        for (key, what) in ERRORS {
-            self.errors.extend(figures(&json[key], &format!("{prefix}{what}, ")));
+        // of several modes none counts more than another
+        let precedence = |own: Precedence| if prefix.is_empty() { own } else { Precedence::Other };
+        for (key, what, mean) in ERRORS {
+            self.errors.extend(figures(&json[key], &format!("{prefix}{what}, "), precedence(mean)));
         }
-        for (key, what) in SINGLE_ERRORS {
-            self.errors.extend(json[key].as_f64().map(|value| plain(format!("{prefix}{what}"), "µm", value)));
+        for (key, what, own) in SINGLE_ERRORS {
+            let error = |value| Quantity {
+                precedence: precedence(own),
+                ..plain(format!("{prefix}{what}"), "µm", value)
+            };
+            self.errors.extend(json[key].as_f64().map(error));
         }
     }
 }
 
-/// Groups of errors in µm, and what they are called.
-const ERRORS: [(&str, &str); 3] = [
-    ("residual", "residual at the poses of the fit"),
-    ("validation", "error at validation poses"),
-    ("cross_validation", "error at held-out poses"),
+/// Groups of errors in µm, what they are called, and what their mean counts.
+const ERRORS: [(&str, &str, Precedence); 3] = [
+    ("residual", "residual at the poses of the fit", Precedence::Other),
+    ("validation", "error at validation poses", Precedence::Validation),
+    ("cross_validation", "error at held-out poses", Precedence::HeldOutPoses),
 ];
 
-/// Errors on their own, in µm.
-const SINGLE_ERRORS: [(&str, &str); 6] = [
-    ("mean_error_um", "mean error that modes are compared by"),
-    ("noise_um", "scatter"),
-    ("rms_before_um", "rms without findings"),
-    ("rms_after_um", "rms with findings"),
-    ("heldout_before_um", "held-out rms without findings"),
-    ("heldout_after_um", "held-out rms with findings"),
+/// Errors on their own, in µm, what they are called, and what they count.
+const SINGLE_ERRORS: [(&str, &str, Precedence); 6] = [
+    ("mean_error_um", "mean error that modes are compared by", Precedence::Other),
+    ("noise_um", "scatter", Precedence::Other),
+    ("rms_before_um", "rms without findings", Precedence::Other),
+    ("rms_after_um", "rms with findings", Precedence::Other),
+    ("heldout_before_um", "held-out rms without findings", Precedence::Other),
+    ("heldout_after_um", "held-out rms with findings", Precedence::HeldOutWithFindings),
 ];
 
 fn items(list: &Value) -> impl Iterator<Item = &Value> {
@@ -146,7 +167,7 @@ fn input(input: &Value) -> Option<(String, String)> {
 }
 
 fn plain(name: String, unit: &str, value: f64) -> Quantity {
-    Quantity { name, unit: unit.into(), value, std_error: None, dof: MANY }
+    Quantity { name, unit: unit.into(), value, std_error: None, dof: MANY, precedence: Precedence::Other }
 }
 
 /// A parameter of a calibration; one that the data do not identify has no standard error worth the
@@ -227,17 +248,20 @@ fn found(finding: &str, json: &Value) -> Option<Quantity> {
     Some(Quantity { std_error: width.map(|width| width / (2.0 * HALF_95)), ..quantity })
 }
 
-/// The numbers directly in an object, and in the objects in it.
-fn figures(json: &Value, prefix: &str) -> Vec<Quantity> {
+/// The numbers directly in an object, and in the objects in it; its `mean_um` counts as `mean`.
+fn figures(json: &Value, prefix: &str, mean: Precedence) -> Vec<Quantity> {
     let mut figures = Vec::new();
     for (key, value) in json.as_object().into_iter().flatten() {
         let (name, unit) = name_and_unit(key);
         match value {
             Value::Number(number) => {
-                figures.extend(number.as_f64().map(|value| plain(format!("{prefix}{name}"), &unit, value)));
+                let precedence = if key == "mean_um" { mean } else { Precedence::Other };
+                let figure =
+                    |value| Quantity { precedence, ..plain(format!("{prefix}{name}"), &unit, value) };
+                figures.extend(number.as_f64().map(figure));
             }
             Value::Object(_) if prefix.is_empty() && key != "provenance" => {
-                figures.extend(self::figures(value, &format!("{name}, ")));
+                figures.extend(self::figures(value, &format!("{name}, "), mean));
             }
             _ => {}
         }

@@ -13,6 +13,7 @@ fn the_most_changed_parameters_are_shown_and_what_has_no_error_is_not() {
         difference: Some(-(k as f64)),
         std_error: (k != 3).then_some(2.0),
         is_significant: None,
+        precedence: Precedence::Other,
     };
     let all: Vec<Change> = (1..=20).map(change).collect();
     let figure = difference_picture(&all).expect("there are ratios");

@@ -4,7 +4,7 @@ use super::warning::Warning;
 use crate::delimited::{Dialect, nearest_name, quoted};
 use crate::error::{Error, Place, Result};
 use crate::toml_text::in_unit;
-use crate::units::UM;
+use crate::units::{PERCENT, UM};
 
 /// What is known of the rig besides its readings.
 ///
@@ -58,7 +58,6 @@ impl Default for RigHeader {
 }
 
 const KEYS: [&str; 5] = ["driven", "noise_um", "noise_n", "load_scale_percent", "sensor_scale_percent"];
-const PERCENT: f64 = 0.01;
 
 impl RigHeader {
     pub(super) fn check(&self) -> Result<()> {

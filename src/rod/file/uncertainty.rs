@@ -6,7 +6,7 @@ use super::check::Check;
 use crate::error::Result;
 use crate::rod::StandardUncertainty;
 use crate::toml_text::Number;
-use crate::units::{GRAM, MM};
+use crate::units::{GRAM, MM, PERCENT};
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, expecting = "a section [standard_uncertainty]")]
@@ -74,8 +74,6 @@ impl Check<'_> {
         }
     }
 }
-
-const PERCENT: f64 = 0.01;
 
 /// A factor of two either way at one standard deviation.
 const LARGEST_PERCENT: f64 = 100.0;

@@ -161,13 +161,23 @@ impl NominalNumber {
             NominalNumber::Section(_, SectionConstant::Iy) => ("iy_mm4", MM * MM * MM * MM),
             NominalNumber::Section(_, SectionConstant::Iz) => ("iz_mm4", MM * MM * MM * MM),
             NominalNumber::Section(_, SectionConstant::TorsionConstant) => ("j_mm4", MM * MM * MM * MM),
-            _ => {
-                let key = self.key();
-                let units =
-                    [("_mm", MM), ("_g", GRAM), ("_deg", DEG), ("_urad_per_nm", URAD_PER_NM), ("_gpa", GPA)];
-                let unit = units.into_iter().find(|(end, _)| key.ends_with(end));
-                (key, unit.map_or(1.0, |(_, si)| si))
-            }
+            NominalNumber::OuterDiameter(_)
+            | NominalNumber::InnerDiameter(_)
+            | NominalNumber::Width(_)
+            | NominalNumber::Height(_)
+            | NominalNumber::Wall(_)
+            | NominalNumber::LengthL1
+            | NominalNumber::LengthL2
+            | NominalNumber::BendRadius
+            | NominalNumber::Station(_) => (self.key(), MM),
+            NominalNumber::TipMass | NominalNumber::Mass(_) => (self.key(), GRAM),
+            NominalNumber::Angle | NominalNumber::Ply(_, PlyNumber::Angle(_)) => (self.key(), DEG),
+            NominalNumber::JointBending(_) | NominalNumber::JointTorsion(_) => (self.key(), URAD_PER_NM),
+            NominalNumber::Ply(_, PlyNumber::E1 | PlyNumber::E2 | PlyNumber::G12) => (self.key(), GPA),
+            NominalNumber::Section(_, SectionConstant::ShearCoefficient)
+            | NominalNumber::PoissonRatio(_)
+            | NominalNumber::BendFactor
+            | NominalNumber::Ply(_, PlyNumber::Nu12) => (self.key(), 1.0),
         }
     }
 
@@ -208,12 +218,47 @@ impl NominalNumber {
     /// A change (SI) of this number from its `nominal` value (SI) in the unit of
     /// [`NominalNumber::key`]: per cent, mm or g.
     pub fn in_unit(&self, change: f64, nominal: f64) -> f64 {
-        match self.key() {
-            "mass_g" => change / GRAM,
-            key if key.ends_with("_mm") => change / MM,
-            _ => change / nominal * 100.0,
+        match self.change_unit() {
+            ChangeUnit::Gram => change / GRAM,
+            ChangeUnit::Millimetre => change / MM,
+            ChangeUnit::Percent => change / nominal * 100.0,
         }
     }
+
+    /// What changes of it are counted in.
+    pub(super) fn change_unit(&self) -> ChangeUnit {
+        match self {
+            NominalNumber::OuterDiameter(_)
+            | NominalNumber::InnerDiameter(_)
+            | NominalNumber::Width(_)
+            | NominalNumber::Height(_)
+            | NominalNumber::Wall(_)
+            | NominalNumber::LengthL1
+            | NominalNumber::LengthL2
+            | NominalNumber::BendRadius
+            | NominalNumber::Station(_) => ChangeUnit::Millimetre,
+            NominalNumber::TipMass | NominalNumber::Mass(_) => ChangeUnit::Gram,
+            NominalNumber::YoungsModulus(_)
+            | NominalNumber::ShearModulus(_)
+            | NominalNumber::Density(_)
+            | NominalNumber::ShearCoefficient(_)
+            | NominalNumber::Section(..)
+            | NominalNumber::Angle
+            | NominalNumber::PoissonRatio(_)
+            | NominalNumber::BendFactor
+            | NominalNumber::JointBending(_)
+            | NominalNumber::JointTorsion(_)
+            | NominalNumber::Ply(..) => ChangeUnit::Percent,
+        }
+    }
+}
+
+/// What changes of a number are counted in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ChangeUnit {
+    Percent,
+    Millimetre,
+    Gram,
 }
 
 impl Part {

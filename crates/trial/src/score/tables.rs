@@ -3,14 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Display;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::diagnosis::Finding;
 use super::rate::Rate;
 use super::scored_case::ScoredCase;
 use super::verdict::Verdict;
 use crate::effect_name::EffectName;
-use crate::ground_truth::Kind;
+use crate::ground_truth::{Concealed, Kind, Parameter};
 
 /// Edges of the bins of detectability, expected log Bayes factor.
 const DETECTABILITY: [f64; 7] = [0.5, 2.0, 5.0, 10.0, 30.0, 100.0, 1000.0];
@@ -179,8 +179,9 @@ pub struct Failure {
     pub case: String,
     /// What went wrong: `single, wrong name`.
     pub what: &'static str,
-    /// What was concealed, with its numbers.
-    pub truth: Vec<String>,
+    /// What was concealed, companions last; in JSON a sentence each.
+    #[serde(serialize_with = "as_sentences")]
+    pub truth: Vec<Concealed>,
     /// What was said.
     pub said: Vec<String>,
     /// A remainder was called unexplained.
@@ -228,24 +229,13 @@ pub fn failures(cases: &[ScoredCase<'_>]) -> Vec<Failure> {
         })
     };
     let failure = |case: &ScoredCase<'_>| {
-        let truth: Vec<String> = case
-            .truth
-            .effects
-            .iter()
-            .chain(&case.truth.companions)
-            .map(|e| {
-                let numbers: Vec<String> =
-                    e.parameters.iter().map(|p| format!("{} {:.3e}", p.name, p.value)).collect();
-                format!("{} at {} ({})", e.effect, e.location, numbers.join(", "))
-            })
-            .collect();
         let said: Vec<String> =
             case.findings.iter().map(|f| format!("{} at {}", f.effect, f.location)).collect();
         let separations = case.truth.effects.iter().map(|e| e.detectability.separation());
         Some(Failure {
             case: case.truth.case.clone(),
             what: what(case)?,
-            truth,
+            truth: case.truth.effects.iter().chain(&case.truth.companions).cloned().collect(),
             said,
             unexplained: case.is_unexplained,
             separation: separations.fold(f64::INFINITY, f64::min).min(1e300),
@@ -255,4 +245,13 @@ pub fn failures(cases: &[ScoredCase<'_>]) -> Vec<Failure> {
         })
     };
     cases.iter().filter_map(failure).collect()
+}
+
+/// `friction at y (force_n 5.200e-1)`.
+fn as_sentences<S: Serializer>(truth: &[Concealed], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(truth.iter().map(|concealed| {
+        let number = |p: &Parameter| format!("{} {:.3e}", p.name, p.value);
+        let numbers: Vec<String> = concealed.parameters.iter().map(number).collect();
+        format!("{} at {} ({})", concealed.effect, concealed.location, numbers.join(", "))
+    }))
 }

@@ -47,7 +47,16 @@ impl Loads {
                 let neutral = model.terms.candidates[term.candidate].parameters[0].neutral;
                 Some((*own, term.values.first().map_or(0.0, |value| value - neutral)))
             }
-            _ => None,
+            Law::Hung(_)
+            | Law::Only
+            | Law::Gear(_)
+            | Law::Play(_)
+            | Law::Nonlinear(_)
+            | Law::MassesUnknown(_)
+            | Law::Rod(_)
+            | Law::Drift(..)
+            | Law::Warms(..)
+            | Law::Moved(_) => None,
         };
         let others: Vec<Term> = terms.iter().filter(|term| mass(term).is_none()).cloned().collect();
         Loads {

@@ -3,12 +3,13 @@
 use super::super::model::CalibrationModel;
 use super::super::model::entry::linear;
 use super::{
-    CalibrationEffect, Context, Entry, Transfer, along, capital, first, first_value, joint, no_event,
-    own_parameters, single,
+    CalibrationEffect, Context, Entry, Transfer, along, first, first_value, joint, no_event, own_parameters,
+    single,
 };
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Finding, JointVariable, Kind, Location, NotTestable, Reported, WrittenTo};
 use crate::robot;
+use crate::units::capital;
 
 /// Scale of an encoder, rad per rad.
 const SCALE: f64 = 1e-4;

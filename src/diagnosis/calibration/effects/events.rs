@@ -6,14 +6,14 @@ use super::super::model::law::Law;
 use super::super::model::vector;
 use super::fixture::places_of_all;
 use super::{
-    CalibrationEffect, Context, Entry, KNOCK, MOST_PLACES, SHIFT, Transfer, capital, first, first_value,
+    CalibrationEffect, Context, Entry, KNOCK, MOST_PLACES, SHIFT, Transfer, first, first_value,
     out_of_the_points, own_parameters, single, three, unit,
 };
 use crate::calibration::Campaign;
 use crate::inference::{
     Candidate, Effect, Finding, FindingPart, Kind, Location, NotTestable, Reported, WrittenTo,
 };
-use crate::units::{DEG, MM, UM};
+use crate::units::{DEG, MM, UM, capital};
 
 /// A pose that was read wrongly, m.
 pub(in crate::diagnosis::calibration) const MISREAD: f64 = 0.5 * MM;

@@ -9,12 +9,12 @@ use nalgebra::Vector3;
 use super::super::model::law::Law;
 use super::super::model::{CalibrationModel, Configuration};
 use super::{
-    CalibrationEffect, Context, EVERY_ROW, Entry, KNOCK, SHIFT, TURN, Transfer, capital, lack, law, no_event,
+    CalibrationEffect, Context, EVERY_ROW, Entry, KNOCK, SHIFT, TURN, Transfer, lack, law, no_event,
     out_of_the_points, own_parameters, size, three, unit,
 };
 use crate::calibration::campaign::{Campaign, GroupName};
 use crate::inference::{Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
-use crate::units::UM;
+use crate::units::{UM, capital};
 
 /// Error of a clamp's place, m and rad.
 const MISPLACED: (f64, f64) = (100.0 * UM, 0.5e-3);

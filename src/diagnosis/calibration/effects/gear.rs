@@ -17,18 +17,17 @@ use std::f64::consts::TAU;
 use super::super::model::CalibrationModel;
 use super::super::model::cosines::Cosines;
 use super::super::model::entry::{Column, linear};
-use super::super::model::gear::Gear;
+use super::super::model::gear::{CYCLES_OF_PART, Gear, RECORDED_HALF_PEAK_TO_PEAK, RECORDED_RMS};
 use super::super::model::law::Law;
 use super::super::write_back::correction_table::table;
-use super::{
-    CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, capital, joint_by, law, no_event, nth,
-};
+use super::{CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, joint_by, law, no_event, nth};
 use crate::calibration::campaign::Campaign;
 use crate::inference::{
-    Candidate, Effect, Estimate, Finding, FindingPart, JointVariable, Kind, NotTestable, Reported, WrittenTo,
+    Candidate, Effect, Estimate, Finding, FindingPart, JointVariable, Kind, NotTestable, Quantity, Reported,
+    WrittenTo,
 };
 use crate::robot;
-use crate::units::significant;
+use crate::units::{capital, significant};
 
 /// Last frequency of the scan, cycles per revolution, and its widest step.
 const SCAN: (f64, f64) = (40.0, 0.5);
@@ -63,8 +62,8 @@ pub static TRANSMISSION_ERROR: CalibrationEffect = CalibrationEffect {
             (&["third_amplitude_urad"], "its amplitude"),
             (&["fourth_cycles_per_rev"], "frequency of the fourth wave"),
             (&["fourth_amplitude_urad"], "its amplitude"),
-            (&["recorded_rms_urad"], "root mean square of the whole error over the recorded angles"),
-            (&["recorded_half_peak_to_peak_urad"], "half the way from its lowest value to its highest"),
+            (&[RECORDED_RMS], "root mean square of the whole error over the recorded angles"),
+            (&[RECORDED_HALF_PEAK_TO_PEAK], "half the way from its lowest value to its highest"),
         ],
         needs: "a joint that turns",
         cause: "an error of its gear or encoder",
@@ -81,6 +80,42 @@ pub static TRANSMISSION_ERROR: CalibrationEffect = CalibrationEffect {
     transfer: Transfer::Made(elsewhere),
     event: no_event,
 };
+
+/// What a finding says of a joint's gear or encoder as a whole, in the units of the answers.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct GearError {
+    /// The joint, from 0.
+    pub joint: usize,
+    /// Root mean square of the whole error over the recorded angles, µrad.
+    pub rms: Option<Quantity>,
+    /// Half the way from its lowest value to its highest, µrad.
+    pub half_peak_to_peak: Option<Quantity>,
+    /// For each part the frequencies of its waves, cycles per revolution; none of a curve.
+    pub cycles_per_rev_of_parts: Vec<Vec<f64>>,
+}
+
+impl GearError {
+    /// `None` where the finding is about something else.
+    pub fn of(finding: &Finding) -> Option<GearError> {
+        let cycles = |part: &FindingPart| {
+            let is_cycles = |own: &&Estimate| CYCLES_OF_PART.contains(&own.name.as_str());
+            part.estimates.iter().filter(is_cycles).map(|own| own.value).collect()
+        };
+        Some(GearError {
+            joint: gear_joint(finding)?,
+            rms: finding.quantity(RECORDED_RMS),
+            half_peak_to_peak: finding.quantity(RECORDED_HALF_PEAK_TO_PEAK),
+            cycles_per_rev_of_parts: finding.parts.iter().map(cycles).collect(),
+        })
+    }
+}
+
+/// The joint, from 0, whose gear a finding is about.
+pub(in crate::diagnosis::calibration) fn gear_joint(finding: &Finding) -> Option<usize> {
+    let is_gear = *finding.effect == TRANSMISSION_ERROR.effect && finding.is_of_model();
+    finding.location.joint().filter(|_| is_gear)
+}
 
 pub(in crate::diagnosis::calibration) fn all(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
     let of_joint = |j: usize| {

@@ -9,14 +9,15 @@ use super::super::model::law::Law;
 use super::super::model::{CalibrationModel, Configuration};
 use super::per_torque::per_torque;
 use super::{
-    CalibrationEffect, Context, Entry, Transfer, along, capital, first, first_value, in_file, joint,
-    joint_by, lack, law, no_event, on_top, own_parameters, single,
+    CalibrationEffect, Context, Entry, Transfer, along, first, first_value, in_file, joint, joint_by, lack,
+    law, no_event, on_top, own_parameters, single,
 };
 use crate::calibration::campaign::Campaign;
 use crate::inference::{
     Effect, Finding, JointVariable, Kind, Location, NotTestable, Parameter, Part, Reported, WrittenTo,
 };
 use crate::robot::{self, TorquePower, across};
+use crate::units::capital;
 
 /// Angle by which a joint or a link deflects under its largest torque beyond what is modelled, rad:
 /// a tenth to a half of what industrial drives deflect by altogether (0.5 mrad).

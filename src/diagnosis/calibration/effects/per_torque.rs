@@ -6,9 +6,7 @@ use super::super::model::CalibrationModel;
 use super::super::model::law::Law;
 use crate::inference::{Estimate, FindingPart};
 use crate::robot::TorquePower;
-
-/// Half of a 95 % interval in standard deviations.
-const COVERAGE: f64 = 1.96;
+use crate::statistics::HALF_95;
 
 /// The parameters with what the torque of the joint, or the moment about the base, leaves
 /// uncertain.
@@ -18,12 +16,20 @@ pub(super) fn per_torque(model: &CalibrationModel, parts: &[FindingPart]) -> Vec
         let power = match model.law(part.term.candidate) {
             Law::Nonlinear(TorquePower::Cube) => 3.0,
             Law::Nonlinear(TorquePower::Square) => 2.0,
-            _ => 1.0,
+            Law::Only
+            | Law::Gear(_)
+            | Law::Play(_)
+            | Law::MassesUnknown(_)
+            | Law::Rod(_)
+            | Law::Hung(_)
+            | Law::Drift(..)
+            | Law::Warms(..)
+            | Law::Moved(_) => 1.0,
         };
         let relative = known.of(part.location.joint());
         let wider = |estimate: &Estimate| {
             let half =
-                (0.5 * (estimate.high - estimate.low)).hypot(COVERAGE * power * relative * estimate.value);
+                (0.5 * (estimate.high - estimate.low)).hypot(HALF_95 * power * relative * estimate.value);
             Estimate { low: estimate.value - half, high: estimate.value + half, ..estimate.clone() }
         };
         part.estimates.iter().map(wider).collect()

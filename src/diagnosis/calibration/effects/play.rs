@@ -6,12 +6,13 @@ use super::super::model::law::{Law, TakenUp};
 use super::joints::{NO_MASSES, loaded};
 use super::per_torque::per_torque;
 use super::{
-    CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, capital, first, first_value, in_file,
-    joint, joint_by, lack, law, no_event, on_top, own_parameters, single,
+    CalibrationEffect, Context, Entry, JOINT_ANGLE, Transfer, along, first, first_value, in_file, joint,
+    joint_by, lack, law, no_event, on_top, own_parameters, single,
 };
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Effect, Finding, JointVariable, Kind, NotTestable, Reported, WrittenTo};
 use crate::robot;
+use crate::units::capital;
 
 /// Play of a gear.
 pub static BACKLASH: CalibrationEffect = CalibrationEffect {

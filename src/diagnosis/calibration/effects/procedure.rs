@@ -14,7 +14,7 @@ use crate::inference::{
     Effect, Finding, JointVariable, Kind, Location, NotTestable, Part, Reported, Variable, WrittenTo,
 };
 use crate::robot;
-use crate::units::{MM, UM};
+use crate::units::{HOUR, MM, UM};
 
 /// Share of a move that is not made yet when an angle is read.
 const LAG: f64 = 3e-4;
@@ -26,8 +26,6 @@ const PER_HOUR: f64 = 20.0 * UM;
 const WARM_UP: f64 = 50.0 * UM;
 /// Distance from one joint to the next below which there is no link to grow, m.
 const LEAST_LINK: f64 = 20.0 * MM;
-/// Seconds in an hour.
-const HOUR: f64 = 3600.0;
 /// Time constants of a robot that warms up, as parts of the recording.
 const WARMING: [f64; 4] = [0.03, 0.1, 0.2, 0.4];
 

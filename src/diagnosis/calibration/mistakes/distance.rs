@@ -10,7 +10,7 @@ use super::search::{FittedDraft, MistakeSearch};
 use crate::calibration::campaign::{Distance, Recording, Targets};
 use crate::diagnosis::calibration::effects::mistakes::{DISTANCE_MISTAKE, UNIT_MISTAKE};
 use crate::inference::{Estimate, Location};
-use crate::statistics::{chi_squared_survival, median};
+use crate::statistics::{HALF_95, chi_squared_survival, median};
 use crate::units::{MM, significant};
 
 /// The key, as it stands in the campaign.
@@ -20,8 +20,6 @@ const SURE: f64 = 6.0;
 const LEAST: f64 = 0.02;
 /// Share of the placements that have to agree.
 const AGREE: f64 = 0.6;
-/// Half of a 95 % interval in standard deviations.
-const COVERAGE: f64 = 1.96;
 /// Units in which the number may stand.
 const UNITS: [(f64, &str); 6] = [
     (10.0, "centimetres"),
@@ -53,7 +51,7 @@ impl Mended {
             return;
         }
         let fits = |factor: f64| (stated.value * factor - value).abs() < SURE * sd.hypot(stated.sd);
-        let half = COVERAGE * sd;
+        let half = HALF_95 * sd;
         let (digits, uncertain) = (significant(value / MM, 4), significant(half / MM, 2));
         let number = (stated.value / MM * 1e6).round() / 1e6;
         let there = format!("by angles and drawing the sockets are {digits} ± {uncertain} mm apart");

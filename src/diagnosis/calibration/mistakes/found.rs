@@ -7,14 +7,15 @@ use super::super::effects::fixture::CLAMP_POSE;
 use super::super::effects::loads::TIP_MASS;
 use super::super::effects::mistakes::FRAME_MISTAKE;
 use super::super::effects::mounting::{BASE_SHIFT, TOOL_SHIFT};
+use super::Mended;
 use super::draft::DraftChange;
 use super::motion::{motion_estimates, moved};
 use super::names::{place, pose_name};
 use super::search::{AdoptedStep, FittedDraft, MistakeSearch, SearchStep};
 use super::slips::Slip;
-use super::{Mended, Suspicion};
+use crate::diagnosis::Suspicion;
 use crate::inference::{Description, Effect, Estimate, Finding, Location, Part, Rival, WrittenTo};
-use crate::units::{DEG, MM, significant};
+use crate::units::{DEG, MM, significant, uncapital};
 
 impl Mended {
     /// Adds what was found: what undoes it, why that is, and ln of its odds against what is there
@@ -27,10 +28,8 @@ impl Mended {
         (cure, why): (&str, &str),
         log_odds: f64,
     ) {
-        let lower = lower(cure);
-        let description =
-            format!("likely mistake in {location}: {why}; {lower} (`rodcal diagnose calibration` says more)");
-        self.suspicions.push(Suspicion { description, spoils_fit: true });
+        let lower = uncapital(cure);
+        self.suspicions.push(Suspicion::new(format!("likely mistake in {location}: {why}; {lower}")));
         let observed = Description { observed: cure.to_owned(), cause: why.to_owned() };
         let p_value = (-log_odds).exp();
         self.found.push(Finding { p_value, ..Finding::without_terms(effect, location, estimates, observed) });
@@ -174,9 +173,4 @@ impl Mended {
             _ => {}
         }
     }
-}
-
-fn lower(sentence: &str) -> String {
-    let mut letters = sentence.chars();
-    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }

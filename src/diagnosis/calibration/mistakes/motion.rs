@@ -8,9 +8,7 @@ use crate::calibration::campaign::Recording;
 use crate::diagnosis::calibration::effects::mounting::BASE_SHIFT;
 use crate::inference::{Estimate, Finding, Location};
 use crate::spatial::Pose;
-
-/// Half of a 95 % interval in standard deviations.
-const COVERAGE: f64 = 1.96;
+use crate::statistics::HALF_95;
 
 /// How far the base moved by the calibration of `recording`, with 95 % intervals: the frame of a
 /// station is six of its unknowns. Of several moves the order is that of the rows.
@@ -43,7 +41,7 @@ pub fn measure_moves(recording: &Recording, calibration: &Calibration, findings:
     for (finding, (before, after)) in moves.into_iter().zip(places) {
         let mut estimates = motion_estimates(&base_at(before), &base_at(after));
         for (k, estimate) in estimates.iter_mut().enumerate() {
-            let half = COVERAGE * (variance(before, k) + variance(after, k)).max(0.0).sqrt();
+            let half = HALF_95 * (variance(before, k) + variance(after, k)).max(0.0).sqrt();
             (estimate.low, estimate.high) = (estimate.value - half, estimate.value + half);
         }
         finding.estimates = estimates;

@@ -24,6 +24,14 @@ const WAVE_STEP: f64 = 0.25;
 /// So many cycles within the joint's range make a wave of one frequency.
 const WHOLE: f64 = 1.5;
 
+/// Names of the frequencies of a part, of which there are as many as it has waves.
+pub(in crate::diagnosis::calibration) const CYCLES_OF_PART: [&str; 2] =
+    ["cycles_per_rev", "second_cycles_per_rev"];
+/// Names of the two sizes of a whole error.
+pub(in crate::diagnosis::calibration) const RECORDED_RMS: &str = "recorded_rms_urad";
+pub(in crate::diagnosis::calibration) const RECORDED_HALF_PEAK_TO_PEAK: &str =
+    "recorded_half_peak_to_peak_urad";
+
 /// What a transmission error is made of.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -139,8 +147,7 @@ impl Gear {
         if let Gear::Curve { .. } = self {
             return Vec::new();
         }
-        let names = ["cycles_per_rev", "second_cycles_per_rev"];
-        let waves = self.waves(part, angles).into_iter().zip(names);
+        let waves = self.waves(part, angles).into_iter().zip(CYCLES_OF_PART);
         waves.map(|(wave, name)| positive(name, wave.cycles, wave.half_cycles)).collect()
     }
 
@@ -258,13 +265,13 @@ impl Curve {
             coverage_factor * gradient.dot(&(&self.covariance * gradient)).max(0.0).sqrt()
         };
         let mut all =
-            vec![positive("recorded_rms_urad", rms, half(&(slope / (count * rms.max(f64::MIN_POSITIVE)))))];
+            vec![positive(RECORDED_RMS, rms, half(&(slope / (count * rms.max(f64::MIN_POSITIVE)))))];
         let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
         let ends = (0..angles.len()).min_by(by_value).zip((0..angles.len()).max_by(by_value));
         if let Some((low, high)) = ends {
             let gradient = (self.terms(angles[high]) - self.terms(angles[low])) * 0.5;
             let value = 0.5 * (values[high].max(0.0) - values[low].min(0.0));
-            all.push(positive("recorded_half_peak_to_peak_urad", value, half(&gradient)));
+            all.push(positive(RECORDED_HALF_PEAK_TO_PEAK, value, half(&gradient)));
         }
         all
     }

@@ -46,6 +46,7 @@ fn as_if(model: &CalibrationModel, candidate: usize) -> Finding {
         effect: found.effect,
         location: found.location.place(),
         estimates: model.estimates(&parts, &hypothesis),
+        place: model.place_among_estimates(&parts),
         description: Description { observed: String::new(), cause: String::new() },
         rivals: Vec::new(),
         p_value: 0.0,

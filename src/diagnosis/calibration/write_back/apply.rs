@@ -96,7 +96,7 @@ pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) 
     let proposed = found.law.as_ref().filter(|proposed| proposed.law.is_ok());
     let law = proposed.and_then(|proposed| proposed.law.as_ref().ok());
     // what was undone before there was a model is nothing to write into it
-    for finding in found.diagnosis.findings.iter().filter(|finding| !finding.parts.is_empty()) {
+    for finding in found.diagnosis.findings.iter().filter(|finding| finding.is_of_model()) {
         let cause = (finding.effect.cause_at)(&finding.location);
         let finding = beside(law, finding);
         put(write(&finding, model, &mut extended), cause);

@@ -82,7 +82,9 @@ fn apart(finding: &Finding) -> Vec<&Rival> {
     apart.extend(places);
     if apart.is_empty() {
         let mut places: Vec<&Rival> = finding.rivals.iter().collect();
-        places.sort_by_key(|rival| rival.term.candidate);
+        // what is no candidate stands behind all that are
+        let number = |rival: &&Rival| rival.term.as_ref().map(|term| term.candidate);
+        places.sort_by_key(|rival| (number(rival).is_none(), number(rival)));
         apart.extend(places.first().copied());
         apart.extend(places.last().copied().filter(|_| places.len() > 1));
     }

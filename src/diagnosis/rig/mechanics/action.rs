@@ -96,13 +96,16 @@ impl FromIterator<(usize, f64)> for Weights {
 }
 
 /// What is added to readings.
-enum Addition<'a> {
+pub enum Addition<'a> {
     /// The parameter times these.
     Weights(&'a Weights),
-    /// The parameter, to each of these data.
-    Constant(&'a [usize]),
+    /// The parameter, to each of this sequence of data, from one of them on.
+    Constant(&'a Arc<[usize]>, usize),
     /// By which a display is late.
     Display(&'a Display),
+    /// What the parameter of this number of a lab's own effect adds, together with all others of
+    /// that effect.
+    Own(&'a OwnLaw, usize),
 }
 
 impl Action {
@@ -121,13 +124,13 @@ impl Action {
         )
     }
 
-    /// What it adds to readings; `None` for what changes how a load becomes a reading, and for a
-    /// lab's own effects, whose parameters act together.
-    fn addition(&self) -> Option<Addition<'_>> {
+    /// What it adds to readings; `None` for what changes how a load becomes a reading.
+    pub fn addition(&self) -> Option<Addition<'_>> {
         match self {
             Action::Shift(weights) | Action::Drift(_, _, weights) => Some(Addition::Weights(weights)),
-            Action::Step(data, from) => Some(Addition::Constant(data.get(*from..).unwrap_or_default())),
+            Action::Step(data, from) => Some(Addition::Constant(data, *from)),
             Action::Display(display) => Some(Addition::Display(display)),
+            Action::Own(law, number) => Some(Addition::Own(law, *number)),
             Action::Friction(_)
             | Action::Presliding
             | Action::SliderPlay
@@ -146,14 +149,41 @@ impl Action {
             | Action::SensorScale(_)
             | Action::TurnSensor(..)
             | Action::TurnSensors(..)
+            | Action::Play(_) => None,
+        }
+    }
+
+    /// True for a parameter that does nothing where the first of its effect does nothing.
+    pub fn is_dependent(&self) -> bool {
+        match self {
+            Action::Onset(_) | Action::Presliding | Action::SliderPlay => true,
+            Action::Own(_, number) => *number > 0,
+            Action::Friction(_)
+            | Action::LoadOffset(_)
+            | Action::TurnLoad(..)
+            | Action::Stiffness
+            | Action::ShearModulus
+            | Action::Bend(_)
+            | Action::Joint(..)
+            | Action::JointIn(..)
+            | Action::Station(_)
+            | Action::PerLoadSquared
+            | Action::PerLoad
+            | Action::Memory(..)
+            | Action::SensorScale(_)
+            | Action::TurnSensor(..)
+            | Action::TurnSensors(..)
             | Action::Play(_)
-            | Action::Own(..) => None,
+            | Action::Display(_)
+            | Action::Shift(_)
+            | Action::Drift(..)
+            | Action::Step(..) => false,
         }
     }
 
     /// True for what adds to the readings whatever else there is.
     pub fn only_adds(&self) -> bool {
-        matches!(self.addition(), Some(Addition::Weights(_) | Addition::Constant(_)))
+        matches!(self.addition(), Some(Addition::Weights(_) | Addition::Constant(..)))
     }
 
     /// True for a gap that an imposed displacement crosses.
@@ -163,21 +193,24 @@ impl Action {
 
     /// Which parameter of a lab's own effect it is.
     pub fn number_of_own(&self) -> Option<usize> {
-        match self {
-            Action::Own(_, number) => Some(*number),
-            _ => None,
+        match self.addition()? {
+            Addition::Own(_, number) => Some(number),
+            Addition::Weights(_) | Addition::Constant(..) | Addition::Display(_) => None,
         }
     }
 
-    /// Adds what it does at `value` to readings, m.
+    /// Adds what it does at `value` to readings, m; nothing of a lab's own effect, whose parameters
+    /// act together.
     pub fn add_to(&self, readings: &mut [f64], value: f64) {
         match self.addition() {
             Some(Addition::Weights(weights)) => {
                 weights.iter().for_each(|(i, weight)| readings[i] += weight * value);
             }
-            Some(Addition::Constant(data)) => data.iter().for_each(|&i| readings[i] += value),
+            Some(Addition::Constant(data, from)) => {
+                data.iter().skip(from).for_each(|&i| readings[i] += value);
+            }
             Some(Addition::Display(display)) => display.add_to(readings, value),
-            None => {}
+            Some(Addition::Own(..)) | None => {}
         }
     }
 
@@ -187,8 +220,8 @@ impl Action {
             Addition::Weights(weights) => {
                 Some(weights.values.iter().fold(0.0, |most: f64, weight| most.max(weight.abs())))
             }
-            Addition::Constant(data) => Some(if data.is_empty() { 0.0 } else { 1.0 }),
-            Addition::Display(_) => None,
+            Addition::Constant(data, from) => Some(if from < data.len() { 1.0 } else { 0.0 }),
+            Addition::Display(_) | Addition::Own(..) => None,
         }
     }
 }

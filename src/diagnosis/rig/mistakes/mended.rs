@@ -5,6 +5,7 @@ use super::part::Part;
 use super::possible::PossibleMistake;
 use super::rods::OtherRod;
 use super::search::NamedMistake;
+use crate::diagnosis::Suspicion;
 use crate::diagnosis::rig::effects::mistakes::{OFFSET_MISTAKE, ROD_MISTAKE, UNIT_MISTAKE};
 use crate::diagnosis::rig::recording::datum::{self, Datum};
 use crate::inference::{Description, Effect, Estimate, Finding, Key, Location, Rival};
@@ -20,7 +21,7 @@ pub(in crate::diagnosis::rig) struct Mended {
     pub readings: Readings,
     pub rod: Option<Rod>,
     /// For each of them one line: what it looks like.
-    pub suspicions: Vec<String>,
+    pub suspicions: Vec<Suspicion>,
     /// Rods that may have been meant, the likeliest first; none where that was decided.
     pub others: Vec<OtherRod>,
     /// False where nothing that could be compared is left of the readings.
@@ -101,7 +102,7 @@ impl Mended {
 
     /// Names a mistake of some of the readings.
     pub(super) fn add_part(&mut self, part: Part) {
-        self.suspicions.push(format!("{}; `rodcal diagnose rig` says more.", part.looks_like));
+        self.suspicions.push(Suspicion::new(part.looks_like));
         let rivals = part
             .rivals
             .into_iter()
@@ -122,7 +123,7 @@ impl Mended {
             true => format!(": the rod seems {} times {softer} than its file", significant(times, 2)),
             false => String::new(),
         };
-        self.suspicions.push(format!("{}{why}; `rodcal diagnose rig` says more.", own.looks_like));
+        self.suspicions.push(Suspicion::new(format!("{}{why}", own.looks_like)));
         let mut rivals: Vec<Rival> = Vec::new();
         for &(number, odds) in &found.rivals {
             let other = &possible[number];

@@ -2,6 +2,7 @@
 
 use super::relabelling::Relabelling;
 use crate::inference::{Effect, Estimate, Key};
+use crate::units::uncapital;
 
 /// One of the hypotheses that the search tries.
 #[derive(Debug, Clone)]
@@ -36,8 +37,7 @@ impl PossibleMistake {
 
     /// The same said of some rows: the rest of a sentence that begins with them.
     pub fn observed_in_some_rows(&self) -> String {
-        let mut letters = self.observed.chars();
-        letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+        uncapital(&self.observed)
     }
 }
 

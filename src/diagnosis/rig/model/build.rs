@@ -7,7 +7,7 @@ use super::cases::Cases;
 use super::first_sight;
 use super::nominal;
 use super::wanted::Wanted;
-use super::{Body, RigModel, is_dependent};
+use super::{Body, RigModel};
 use crate::diagnosis::rig::effects::entry::{Context, Entry};
 use crate::diagnosis::rig::effects::registry;
 use crate::diagnosis::rig::laws::of_rod_file;
@@ -206,11 +206,11 @@ impl RigModel {
                     // where a joint is matters as soon as it gives way, when a load was hung as
                     // soon as there is creep
                     matches!(action, Action::Station(_))
-                        || is_dependent(action)
+                        || action.is_dependent()
                         || self.is_felt(action, parameter, nothing)
                 })
                 .unzip();
-            let is_second = |action: &Action| matches!(action, Action::Station(_)) || is_dependent(action);
+            let is_second = |action: &Action| matches!(action, Action::Station(_)) || action.is_dependent();
             if actions.iter().any(|action| !is_second(action)) {
                 self.candidates.push(Candidate { parameters, ..candidate });
                 self.actions.push(actions);

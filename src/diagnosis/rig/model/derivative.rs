@@ -5,8 +5,8 @@ use std::borrow::Cow;
 
 use nalgebra::DVector;
 
-use super::{Body, RigModel, is_dependent};
-use crate::diagnosis::rig::mechanics::action::Action;
+use super::{Body, RigModel};
+use crate::diagnosis::rig::mechanics::action::{Action, Addition};
 use crate::diagnosis::rig::mechanics::state::State;
 use crate::inference::{DERIVATIVE_STEP, ForwardModel, Parameter, Term};
 
@@ -49,7 +49,7 @@ impl<'a> Derivative<'a> {
     /// usual size of that.
     fn values(&self, k: usize) -> Vec<f64> {
         let (mut values, first) = (self.term().values.clone(), &self.parameters()[0]);
-        if is_dependent(&self.actions()[k]) && values[0] == first.neutral {
+        if self.actions()[k].is_dependent() && values[0] == first.neutral {
             values[0] += first.size;
         }
         values
@@ -59,19 +59,18 @@ impl<'a> Derivative<'a> {
     fn of_addition(&self, k: usize) -> Option<DVector<f64>> {
         let (action, size) = (&self.actions()[k], self.parameters()[k].size);
         let count = self.model.data.len();
-        match action {
-            Action::Own(law, _) => {
+        match action.addition()? {
+            Addition::Own(law, _) => {
                 let numbers = self.actions().iter().filter_map(Action::number_of_own);
                 let given: Vec<(usize, f64)> = numbers.zip(self.values(k)).collect();
                 Some(law.derivative(count, &given, k, size))
             }
-            Action::Display(display) => Some(display.derivative(count, self.term().values[k], size)),
-            action if action.only_adds() => {
+            Addition::Display(display) => Some(display.derivative(count, self.term().values[k], size)),
+            Addition::Weights(_) | Addition::Constant(..) => {
                 let mut column = DVector::zeros(count);
                 action.add_to(column.as_mut_slice(), size);
                 Some(column)
             }
-            _ => None,
         }
     }
 

@@ -8,7 +8,7 @@ use super::RigModel;
 use super::derivative::Derivative;
 use crate::diagnosis::rig::effects::events::by_channel;
 use crate::diagnosis::rig::effects::registry;
-use crate::diagnosis::rig::mechanics::action::Action;
+use crate::diagnosis::rig::mechanics::action::{Action, Addition};
 use crate::diagnosis::rig::mechanics::state::State;
 use crate::inference::{
     Candidate, Description, Estimate, Finding, FindingPart, ForwardModel, Hypothesis, Kind, Location, Step,
@@ -31,9 +31,10 @@ impl ForwardModel for RigModel {
     }
 
     fn step(&self, candidate: usize) -> Option<Step> {
-        match &self.actions[candidate][..] {
-            [Action::Step(data, from)] => Some(Step { data: Arc::clone(data), from: *from }),
-            _ => None,
+        let [action] = &self.actions[candidate][..] else { return None };
+        match action.addition()? {
+            Addition::Constant(data, from) => Some(Step { data: Arc::clone(data), from }),
+            Addition::Weights(_) | Addition::Display(_) | Addition::Own(..) => None,
         }
     }
 
@@ -66,6 +67,11 @@ impl ForwardModel for RigModel {
         let mut estimates: Vec<Estimate> = parts.iter().flat_map(|part| self.widened(part)).collect();
         by_channel(parts, &mut estimates);
         estimates
+    }
+
+    fn place_among_estimates(&self, parts: &[FindingPart]) -> Option<usize> {
+        let actions = &self.actions[parts.first()?.term.candidate];
+        actions.iter().position(|action| matches!(action, Action::Station(_)))
     }
 
     fn describe(&self, finding: &Finding) -> Description {

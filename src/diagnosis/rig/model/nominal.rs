@@ -18,9 +18,7 @@ use crate::inference::NominalParameter;
 use crate::rig::readings::RigHeader;
 use crate::rod::{NominalNumber, Rod};
 use crate::spatial::Axis;
-use crate::units::MM;
-
-const PERCENT: f64 = 0.01;
+use crate::units::{MM, PERCENT};
 
 /// What a number that is known to a standard uncertainty is.
 #[derive(Debug, Clone, PartialEq)]

@@ -37,10 +37,11 @@ impl RigModel {
                     (half, self.candidates[own].parameters[k].bounds.0)
                 }
             };
-            for rival in part.rivals.iter().filter(|rival| self.is_scanned(rival.term.candidate)) {
-                let actions = &self.actions[rival.term.candidate];
+            let terms = part.rivals.iter().filter_map(|rival| rival.term.as_ref());
+            for term in terms.filter(|term| self.is_scanned(term.candidate)) {
+                let actions = &self.actions[term.candidate];
                 let same = actions.iter().position(|action| self.of_joint(action) == number);
-                let Some(other) = same.and_then(|k| rival.term.values.get(k)) else { continue };
+                let Some(other) = same.and_then(|k| term.values.get(k)) else { continue };
                 estimate.low = estimate.low.min(other - half).max(least);
                 estimate.high = estimate.high.max(other + half);
             }
@@ -54,12 +55,34 @@ impl RigModel {
     }
 
     fn of_joint(&self, action: &Action) -> Option<OfJoint> {
-        match (action, &self.body) {
-            (Action::Station(_), _) => Some(OfJoint::Station),
-            (Action::Joint(number, _), Body::Rod(structure)) => {
-                Some(OfJoint::Compliance(structure.deformation(*number)))
-            }
-            _ => None,
+        match action {
+            Action::Station(_) => Some(OfJoint::Station),
+            Action::Joint(number, _) => match &self.body {
+                Body::Rod(structure) => Some(OfJoint::Compliance(structure.deformation(*number))),
+                Body::Lines(_) => None,
+            },
+            Action::Friction(_)
+            | Action::Presliding
+            | Action::SliderPlay
+            | Action::LoadOffset(_)
+            | Action::TurnLoad(..)
+            | Action::Stiffness
+            | Action::ShearModulus
+            | Action::Bend(_)
+            | Action::JointIn(..)
+            | Action::PerLoadSquared
+            | Action::PerLoad
+            | Action::Memory(..)
+            | Action::Onset(_)
+            | Action::SensorScale(_)
+            | Action::TurnSensor(..)
+            | Action::TurnSensors(..)
+            | Action::Play(_)
+            | Action::Display(_)
+            | Action::Shift(_)
+            | Action::Drift(..)
+            | Action::Step(..)
+            | Action::Own(..) => None,
         }
     }
 }

@@ -6,8 +6,8 @@ mod events;
 use nalgebra::Vector3;
 
 use super::distances::Distances;
-use super::joints::{gear_of, joint_of};
-use crate::diagnosis::calibration::CalibrationDiagnosis;
+use super::joints::joint_of;
+use crate::diagnosis::calibration::{CalibrationDiagnosis, GearError};
 use crate::inference::{Covariate, Finding, JointVariable, Location, Variable};
 use crate::report::chart::Figure;
 use crate::report::diagnosis::tables::covariates;
@@ -28,7 +28,7 @@ const DENSE: usize = 60;
 /// all of it in its order, with what happened.
 pub fn seen(found: &CalibrationDiagnosis) -> Vec<Figure> {
     let mut figures = angle::errors(found);
-    let other = found.diagnosis.findings.iter().find(|finding| gear_of(found, finding).is_none());
+    let other = found.diagnosis.findings.iter().find(|finding| GearError::of(finding).is_none());
     let is_told = other.is_some() || found.diagnosis.discrepancy.is_some() || figures.is_empty();
     let best = is_told.then(|| seen_along(found, other)).flatten();
     figures.extend(

@@ -7,10 +7,9 @@ use super::{List, PossibleMistake, UNUSUAL, exact};
 use crate::calibration::campaign::Campaign;
 use crate::inference::{Estimate, Key};
 use crate::robot::{Motion, Robot};
+use crate::statistics::HALF_95;
 use crate::units::{DEG, MM, significant};
 
-/// Half of a 95 % interval in standard deviations.
-const COVERAGE: f64 = 1.96;
 /// Ln of the share of all angles that a step of a joint's zero agrees with.
 const ANY_ANGLE: f64 = -6.0;
 
@@ -66,7 +65,7 @@ impl PossibleMistake {
             Motion::Revolute => (DEG, "°", "deg"),
             Motion::Prismatic => (MM, " mm", "mm"),
         };
-        let (value, half) = (by / unit, COVERAGE * error / unit);
+        let (value, half) = (by / unit, HALF_95 * error / unit);
         let digits = (value.abs() / half.max(1e-9)).log10().ceil().clamp(1.0, 4.0) as usize + 1;
         let size = significant(value.abs(), digits);
         self.cure = match value > 0.0 {

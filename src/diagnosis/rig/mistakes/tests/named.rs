@@ -30,7 +30,7 @@ fn a_diagnosis_names_the_mistake_first_and_writes_the_corrected_file() {
     assert_eq!(found.diagnosis.findings[0].effect.name, "stuck_sensor");
     assert!(found.diagnosis.discrepancy.is_none());
     let lines = suspected(&wrong, Some(&file)).unwrap();
-    assert!(lines[0].starts_with("load_n looks like kilograms: the rod seems 9."), "{lines:?}");
+    assert!(lines[0].description.starts_with("load_n looks like kilograms: the rod seems 9."), "{lines:?}");
 }
 
 /// Pounds for kilograms, and pounds of force where sensors along the loads see one factor only, are

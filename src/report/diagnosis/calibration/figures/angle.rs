@@ -3,9 +3,8 @@
 use nalgebra::Vector3;
 
 use crate::diagnosis::Limitation;
-use crate::diagnosis::calibration::{CalibrationDiagnosis, Curve};
+use crate::diagnosis::calibration::{CalibrationDiagnosis, Curve, GearError};
 use crate::report::chart::Figure;
-use crate::report::diagnosis::calibration::joints::gear_of;
 use crate::report::pictures::diagnosis::{AngleError, angle_errors};
 use crate::robot::Motion;
 use crate::units::URAD;
@@ -62,7 +61,11 @@ fn error(found: &CalibrationDiagnosis, joint: usize, [before, after]: [&[Vector3
         };
         (jacobian.norm() > LEVER * longest).then_some([angles[row].to_degrees(), shown / URAD, left / URAD])
     });
-    let of_gear = found.diagnosis.findings.iter().find(|finding| gear_of(found, finding) == Some(joint));
+    let of_gear = found
+        .diagnosis
+        .findings
+        .iter()
+        .find(|finding| GearError::of(finding).is_some_and(|gear| gear.joint == joint));
     let factor = of_gear.map_or(0.0, |finding| finding.parts[0].coverage_factor);
     let drawn = |curve: &Curve| {
         let at = |q: f64| [q.to_degrees(), curve.at(q) / URAD, factor * curve.sd(q) / URAD];

@@ -22,7 +22,7 @@ const AT_RATED_TORQUE: f64 = 1.5e-3;
 const LEAST_RATED: f64 = 5.0;
 
 /// How many times more compliant than its gear a drive may be.
-const SOFTEST: f64 = 3.0;
+pub(crate) const SOFTEST: f64 = 3.0;
 
 /// Standard deviation of the compliance of every joint, rad/(N·m); what is beyond is no drive.
 pub(crate) fn plausible_compliances(setup: &Setup, payload: Option<Body>) -> Vec<f64> {

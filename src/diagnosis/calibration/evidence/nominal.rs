@@ -4,10 +4,15 @@
 //! ```text
 //! mass of link k      Σ_{j≤k} Jⱼ·cⱼ·zⱼ·((p_k − oⱼ) × g)·u       u a share of its mass
 //! its centre          Σ_{j≤k} Jⱼ·cⱼ·zⱼ·(e × g)·m_k·u            e an axis of the link, u a share of its distance
+//! … with a drive      Jⱼ·s(cⱼ)·zⱼ·(e × g)·m_k·u                 s(cⱼ) how well its compliance is known
 //! a number of the rod (R·(∂C^F·F + ∂C^g·g) + ∂yield(weight))·u   by the rod file's standard uncertainties
 //! place of a clamp    −e·u                                      where the campaign states u
 //! readings' share     R·e·eᵀ·Rᵀ·u·σ²/ū²·(λ − ½)                 λ of the scatter σ² along e is theirs, not the arm's
 //! ```
+//!
+//! A drive that no torque of the robot's file loads has any compliance, or none: what the centres
+//! load it with all the same is in proportion to both, (cⱼ + s·x)·u·y, and has the variance of
+//! both, cⱼ²u² + s²u².
 //!
 //! The last is what the displacement u of a clamp's ball has in common with the residual: where the
 //! readings scatter it is larger by their error ε, which the residual holds too, and where the
@@ -89,6 +94,23 @@ fn of_links(campaign: &Campaign, context: &Context) -> Vec<(NominalParameter, Co
             let column = context.column(|_, there| {
                 let along: Vector3<f64> = there.link[k].rotation.column(axis.index()).into();
                 there.joint_deflection_below(k, |_| along, &(there.gravity * body.mass))
+            });
+            (centre, column)
+        }));
+        let uncertain = (0..=k).filter(|j| context.compliance_uncertainty[*j] > 0.0);
+        let drives = uncertain.flat_map(|j| Axis::ALL.map(|axis| (j, axis)));
+        numbers.extend(drives.map(|(j, axis)| {
+            let centre = NominalParameter {
+                name: format!("centre of link {} along {axis}, by the drive of joint {}", k + 1, j + 1),
+                unit: "mm",
+                si: MM,
+                value: body.centre[axis.index()],
+                standard_uncertainty: share * distance,
+            };
+            let column = context.column(|_, there| {
+                let along: Vector3<f64> = there.link[k].rotation.column(axis.index()).into();
+                let torque = there.axis[j].dot(&along.cross(&(there.gravity * body.mass)));
+                there.tip_jacobian[j] * (context.compliance_uncertainty[j] * torque)
             });
             (centre, column)
         }));

@@ -8,7 +8,7 @@ use super::entry::Column;
 use super::patterns::Patterns;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{
-    Calibration, Compensation, Mode, Robust, by_own_weight, plausible_compliances, without_tip,
+    Calibration, Compensation, Mode, Robust, SOFTEST, by_own_weight, plausible_compliances, without_tip,
 };
 use crate::error::Result;
 use crate::inference::Pattern;
@@ -57,6 +57,9 @@ pub struct Context<'a> {
     pub modelled_mass: (f64, f64),
     /// Compliance beyond which the drive of each joint is not of its class, rad/(N·m).
     pub softest: Vec<f64>,
+    /// Standard uncertainty of the compliance of each drive, rad/(N·m): see
+    /// [`compliance_uncertainty`]; 0 without a calibration.
+    pub compliance_uncertainty: Vec<f64>,
     /// Share of `deflection` that the calibration took into account: 1, or 0 where it assumed the
     /// rod rigid.
     pub accounted: f64,
@@ -79,11 +82,13 @@ impl<'a> Context<'a> {
         let steps = steps(recording, &calibration.deviations);
         let determined = calibration.fit.covariance.rank;
         let noise = calibration.noise.estimate(recording, &steps, determined, Robust::Huber)?.pooled;
+        let still = Context::still(campaign, calibration.mode, &calibration.setup, &calibration.deflections)?;
         Ok(Context {
             noise,
+            compliance_uncertainty: compliance_uncertainty(calibration, &still.softest),
             off: calibration.deviations.iter().map(|deviation| deviation.norm() / noise).collect(),
             left: calibration.deviations.iter().map(|deviation| -deviation).collect(),
-            ..Context::still(campaign, calibration.mode, &calibration.setup, &calibration.deflections)?
+            ..still
         })
     }
 
@@ -169,6 +174,7 @@ impl<'a> Context<'a> {
             accounted,
             own_weight,
             moved_after: Vec::new(),
+            compliance_uncertainty: vec![0.0; softest.len()],
             softest,
             modelled_mass: modelled_mass(campaign),
             patterns: Patterns::new(&configurations),
@@ -313,6 +319,22 @@ fn modelled_mass(campaign: &Campaign) -> (f64, f64) {
 /// class are, in place of something else, would spoil them.
 pub fn plausible(setup: &Setup, softest: &[f64]) -> Vec<f64> {
     setup.compliance.iter().zip(softest).map(|(own, softest)| own.clamp(0.0, softest.max(0.0))).collect()
+}
+
+/// How well the compliance of each drive is known, rad/(N·m): as a calibration has found it, or,
+/// where nothing loads it in the robot's file, as a drive of its class usually is. One that the
+/// file states and nobody calibrated is known.
+fn compliance_uncertainty(calibration: &Calibration, softest: &[f64]) -> Vec<f64> {
+    let of_joint = |(joint, softest): (usize, &f64)| {
+        let usual = softest.max(0.0) / SOFTEST;
+        let own = calibration.parameters.iter().find(|own| own.parameter.compliant_joint() == Some(joint));
+        match own {
+            Some(own) => own.std_error.map_or(usual, |error| error.min(usual)),
+            None if calibration.setup.compliance[joint] == 0.0 => usual,
+            None => 0.0,
+        }
+    };
+    softest.iter().enumerate().map(of_joint).collect()
 }
 
 /// Differences of neighbours in each clamp or socket, over √2: as large as noise alone, whatever

@@ -11,6 +11,8 @@ const IN_FULL: usize = 2;
 const NAMED: usize = 3;
 /// From so many times the scatter of readings on the scatter of zeros is said.
 const FAR_APART: f64 = 4.0;
+/// Who stated a noise wants to know where so many times as much comes from.
+const MORE_THAN_STATED: f64 = 1.5;
 /// Held-out data are predicted so many times worse than others are fitted, and with at least this
 /// share of the error without any finding: that confirms hardly more than that something is there.
 const MUCH_WORSE: f64 = 2.0;
@@ -82,27 +84,39 @@ fn answer(subject: &Subject) -> String {
 /// How the data scatter: noise only where somebody stated it; what repeats show; else of unknown
 /// origin.
 fn scatter(subject: &Subject) -> String {
-    let (test, noise) = (&subject.diagnosis.noise_test, um(subject.diagnosis.noise));
+    let (test, noise) = (&subject.diagnosis.noise_test, noise(subject.diagnosis));
     match (test.stated, &subject.diagnosis.lack_of_fit_after) {
-        (Some(stated), _) => format!("noise is {noise} µm (stated: {} µm).", um(stated)),
-        (None, Some(_)) => format!("the repeats scatter by {noise} µm{}.", subject.per),
-        (None, None) => format!("{noise} µm{} of unexplained scatter remain.", subject.per),
+        (Some(stated), _) => format!("noise is {noise} (stated: {} µm).", um(stated)),
+        (None, Some(_)) => format!("the repeats scatter by {noise}{}.", subject.per),
+        (None, None) => format!("{noise}{} of unexplained scatter remain.", subject.per),
     }
 }
 
 /// The same of what is left: `the scatter of the repeats`.
 fn scatter_of(subject: &Subject) -> String {
-    let (test, noise) = (&subject.diagnosis.noise_test, um(subject.diagnosis.noise));
+    let (test, noise) = (&subject.diagnosis.noise_test, noise(subject.diagnosis));
     let without = match subject.diagnosis.suspects.len() {
         0 => String::new(),
         1 => " without the suspect reading".to_owned(),
         count => format!(" without {count} suspect {}", subject.noun),
     };
     match (test.stated, &subject.diagnosis.lack_of_fit_after) {
-        (Some(stated), _) => format!("noise ({noise} µm{without}; stated: {} µm)", um(stated)),
-        (None, Some(_)) => format!("as large as the scatter of the repeats ({noise} µm){without}"),
+        (Some(stated), _) => format!("noise ({noise}{without}; stated: {} µm)", um(stated)),
+        (None, Some(_)) => format!("as large as the scatter of the repeats ({noise}){without}"),
         (None, None) => "unexplained scatter (nothing was repeated)".to_owned(),
     }
+}
+
+/// `1.6 µm`; where it is far more than was stated, and does not contradict that, what of it is whose.
+fn noise(diagnosis: &Diagnosis) -> String {
+    let (test, ratio) = (&diagnosis.noise_test, diagnosis.shared_ratio);
+    let is_more = test.stated.is_some_and(|stated| diagnosis.noise > MORE_THAN_STATED * stated);
+    if !is_more || test.is_contradicted() || ratio <= 0.0 {
+        return format!("{} µm", um(diagnosis.noise));
+    }
+    // σ² of a reading is that of its run's zero and its own
+    let own = diagnosis.noise / (1.0 + ratio).sqrt();
+    format!("{} µm of the readings and {} µm of the zeros of the runs", um(own), um(own * ratio.sqrt()))
 }
 
 /// Is the scatter neither stated nor shown by repeats? It is then estimated from the residual,

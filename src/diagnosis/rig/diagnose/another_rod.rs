@@ -10,6 +10,7 @@ use crate::diagnosis::rig::model::RigModel;
 use crate::diagnosis::rig::model::wanted::Wanted;
 use crate::error::Result;
 use crate::inference::{Compared, Diagnosis, Evidence, Finding, Kind, Location, Rival, rms};
+use crate::rod::Rod;
 
 /// Ln of the odds within which two rods are indistinguishable: 20.
 const ALIKE: f64 = 2.995_732;
@@ -54,23 +55,32 @@ pub fn others(
 ) -> Result<Vec<Other>> {
     let mut found = Vec::new();
     if diagnosis.discrepancy.is_none()
-        && !diagnosis.findings.iter().any(|finding| is_of_the_rod(model, finding))
+        && !diagnosis
+            .findings
+            .iter()
+            .any(|finding| is_of_the_rod(model, finding) || is_a_turn(model, finding))
     {
         return Ok(found);
     }
-    if mended.others.is_empty() {
-        return Ok(found);
-    }
+    let Some(given) = mended.rod.as_ref().filter(|_| !mended.others.is_empty()) else { return Ok(found) };
     let compared = Compared::new(model, evidence);
+    let as_rod = |rod: &Rod| RigModel::with_effects(&mended.readings, Some(rod), &Wanted::AllAnd(&model.own));
     for meant in &mended.others {
-        let (other, of_other, _) =
-            RigModel::with_effects(&mended.readings, Some(&meant.rod), &Wanted::AllAnd(&model.own))?;
+        let mut meant = meant.clone();
+        if meant.is_angled() {
+            meant = meant.sharpened(given, |rod| {
+                let (other, of_other, _) = as_rod(rod).ok()?;
+                let is_alike = of_other.residual.len() == evidence.residual.len();
+                is_alike.then(|| compared.log_odds(&other, &of_other))
+            });
+        }
+        let (other, of_other, _) = as_rod(&meant.rod)?;
         if of_other.residual.len() != evidence.residual.len() {
             continue;
         }
         let log_odds = compared.log_odds(&other, &of_other) + meant.log_prior + RARE;
         let explains = rms(&(&evidence.residual - &of_other.residual));
-        found.push(Other { rod: meant.clone(), log_odds, explains });
+        found.push(Other { rod: meant, log_odds, explains });
     }
     found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
     Ok(found)
@@ -86,6 +96,12 @@ pub fn add_rivals(others: &[Other], model: &RigModel, diagnosis: &mut Diagnosis)
             finding.rivals.insert(0, Rival::without_term(other.rod.effect, location, odds));
         }
     }
+}
+
+/// Loads and sensors that are turned: so is the plane of a rod with another angle.
+fn is_a_turn(model: &RigModel, finding: &Finding) -> bool {
+    let turns = |candidate: usize| model.actions[candidate].iter().any(|action| action.turns());
+    finding.parts.iter().any(|part| turns(part.term.candidate))
 }
 
 fn is_of_the_rod(model: &RigModel, finding: &Finding) -> bool {

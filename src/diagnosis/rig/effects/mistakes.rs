@@ -123,6 +123,19 @@ pub static ROD_MISTAKE: Effect = Effect {
     ..NONE
 };
 
+/// A rod that was bent, or mounted, to another angle than that of its file.
+pub static ANGLE_MISTAKE: Effect = Effect {
+    name: "angle_mistake",
+    summary: "the angle between the pipes is not the one of the rod file",
+    formula: "the compliance with γ at the whole degree that leaves the least",
+    needs: "loads in the plane of the rod",
+    cause: "another angle between the pipes",
+    cause_at: |location| at("another angle between the pipes", location),
+    written_to: WrittenTo::Model,
+    direct_check: Some("Measure the angle between the pipes; 180° is a straight rod."),
+    ..NONE
+};
+
 /// A display that does not move.
 pub static STUCK_SENSOR: Effect = Effect {
     name: "stuck_sensor",

@@ -30,7 +30,7 @@ pub static ALL: [&RigEffect; 18] = [
 
 /// Every mistake that the diagnosis of a rig knows. They are no terms of a model: they are undone
 /// before there is one.
-pub static MISTAKES: [&Effect; 11] = [
+pub static MISTAKES: [&Effect; 12] = [
     &mistakes::UNIT_MISTAKE,
     &mistakes::SIGN_MISTAKE,
     &mistakes::SWAP_MISTAKE,
@@ -40,6 +40,7 @@ pub static MISTAKES: [&Effect; 11] = [
     &mistakes::COPY_MISTAKE,
     &mistakes::OFFSET_MISTAKE,
     &mistakes::ROD_MISTAKE,
+    &mistakes::ANGLE_MISTAKE,
     &mistakes::STUCK_SENSOR,
     &mistakes::SATURATED_SENSOR,
 ];

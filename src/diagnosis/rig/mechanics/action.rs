@@ -124,6 +124,11 @@ impl Action {
         )
     }
 
+    /// True for what turns loads or readings against the rod.
+    pub fn turns(&self) -> bool {
+        matches!(self, Action::TurnLoad(..) | Action::TurnSensor(..) | Action::TurnSensors(..))
+    }
+
     /// What it adds to readings; `None` for what changes how a load becomes a reading.
     pub fn addition(&self) -> Option<Addition<'_>> {
         match self {

@@ -10,9 +10,10 @@ use super::labels::BESIDE;
 use super::physics::Verdict;
 use super::possible::PossibleMistake;
 use super::relabelling::Relabelling;
-use crate::diagnosis::rig::effects::mistakes::{ROD_MISTAKE, SWAP_MISTAKE};
+use crate::diagnosis::rig::effects::mistakes::{ANGLE_MISTAKE, ROD_MISTAKE, SWAP_MISTAKE};
 use crate::inference::{Effect, Key};
 use crate::rod::Rod;
+use crate::units::significant;
 
 /// Another rod is no unit: what remains must be as files are.
 const OTHER: f64 = 1.1;
@@ -22,6 +23,13 @@ const OTHER_ROD: f64 = -2.0;
 /// the slopes may see them.
 const MOST_OTHERS: usize = 4;
 const FAR_BEHIND: f64 = 10.0;
+
+/// How far the angle of a rod may be from that of its file, and how much likelier the slopes must
+/// be with it (ln).
+const ANGLES_DEG: i32 = 60;
+const LIKELIER: f64 = 3.0;
+/// Ln of the prior of another angle.
+const OTHER_ANGLE: f64 = -3.0;
 
 /// A rod that may have been meant, with what must be done to the stations of the readings.
 pub(super) struct Body {
@@ -79,6 +87,41 @@ fn of_file((file, other): &(String, Rod), rod: &Rod) -> OtherRod {
 }
 
 impl OtherRod {
+    /// The given rod with another angle between its pipes, degrees.
+    fn of_angle(rod: &Rod, degrees: f64) -> OtherRod {
+        let file = rod.gamma.to_degrees();
+        OtherRod {
+            rod: Rod { gamma: degrees.to_radians(), ..rod.clone() },
+            effect: &ANGLE_MISTAKE,
+            location: Key::new("gamma_deg"),
+            observed: format!(
+                "The angle between the pipes is {degrees:.0}°, not {}°: write gamma_deg = {degrees:.1} if a \
+                 measurement confirms it",
+                significant(file, 4)
+            ),
+            log_prior: OTHER_ANGLE,
+        }
+    }
+
+    /// True for the given rod with another angle.
+    pub(in crate::diagnosis::rig) fn is_angled(&self) -> bool {
+        self.effect == &ANGLE_MISTAKE
+    }
+
+    /// The `given` rod with the angle, of those up to five degrees away, that is `likeliest`.
+    pub(in crate::diagnosis::rig) fn sharpened(
+        self,
+        given: &Rod,
+        likeliest: impl Fn(&Rod) -> Option<f64>,
+    ) -> OtherRod {
+        const WITHIN_DEG: i32 = 5;
+        let middle = self.rod.gamma.to_degrees();
+        let angles = (-WITHIN_DEG..=WITHIN_DEG).map(|by| OtherRod::of_angle(given, middle + f64::from(by)));
+        let known = angles.filter(|other| is_possible(&other.rod));
+        let known = known.filter_map(|other| Some((likeliest(&other.rod)?, other)));
+        known.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(self, |(_, other)| other)
+    }
+
     fn mistake(self) -> (Body, PossibleMistake) {
         let OtherRod { rod, effect, location, observed, log_prior } = self;
         let (looks_like, within) = match effect == &ROD_MISTAKE {
@@ -137,6 +180,12 @@ pub(super) fn likely(
     verdict_of: impl Fn(&Rod) -> Option<Verdict>,
 ) -> Vec<OtherRod> {
     let Some(own) = verdict_of(rod) else { return Vec::new() };
+    let file = rod.gamma.to_degrees().round();
+    let angles = (-ANGLES_DEG..=ANGLES_DEG).filter(|by| *by != 0).map(|by| file + f64::from(by));
+    let bent = angles.map(|degrees| OtherRod::of_angle(rod, degrees)).filter(|other| is_possible(&other.rod));
+    let bent = bent.filter_map(|other| Some((verdict_of(&other.rod)?.log_evidence, other)));
+    let bent = bent.max_by(|a, b| a.0.total_cmp(&b.0));
+    let bent = bent.filter(|(evidence, _)| *evidence > own.log_evidence + LIKELIER);
     let all = exchanged(rod).into_iter().filter(|other| is_possible(&other.rod));
     let known =
         all.chain(others.iter().map(|other| of_file(other, rod))).filter(|other| !is_alike(&other.rod, rod));
@@ -148,7 +197,7 @@ pub(super) fn likely(
             && verdict.log_evidence > own.log_evidence - FAR_BEHIND;
         is_likely.then_some((verdict.log_evidence, other))
     });
-    let mut known: Vec<(f64, OtherRod)> = known.collect();
+    let mut known: Vec<(f64, OtherRod)> = known.chain(bent).collect();
     known.sort_by(|a, b| b.0.total_cmp(&a.0));
     known.into_iter().take(MOST_OTHERS).map(|(_, other)| other).collect()
 }

@@ -1,8 +1,9 @@
 //! Whether an effect is a point of the grammar: for the tests of both libraries of effects.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::{Form, Site};
+use crate::linalg::thin_svd;
 
 /// A place with a variable, by their names, and what the law is there; `sides` where it has the
 /// sign of the last move.
@@ -31,7 +32,7 @@ pub fn likeness(sites: &[Site], point: GrammarPoint, constants: &[f64], effect: 
         for s in constants {
             let between = basis(&columns(site, point, *s)).transpose() * &effect;
             if !between.is_empty() {
-                best = between.singular_values().max().max(best);
+                best = thin_svd(&between).unwrap().singular_values.max().max(best);
             }
         }
     }
@@ -56,14 +57,20 @@ fn columns(site: &Site, point: GrammarPoint, s: f64) -> DMatrix<f64> {
     })
 }
 
-/// Orthonormal columns of the same span.
+/// Orthonormal columns of the same span, by Gram and Schmidt; twice is enough.
 fn basis(columns: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut scaled = columns.clone();
-    for mut column in scaled.column_iter_mut() {
-        let norm = column.norm();
-        column /= if norm > 0.0 { norm } else { 1.0 };
+    let mut found: Vec<DVector<f64>> = Vec::new();
+    for column in columns.column_iter() {
+        let Some(mut left) = column.try_normalize(0.0) else { continue };
+        for own in found.iter().chain(&found) {
+            left -= own * own.dot(&left);
+        }
+        if left.norm() > 1e-9 {
+            found.push(left.normalize());
+        }
     }
-    let svd = scaled.svd(true, false);
-    let rank = svd.singular_values.iter().filter(|value| **value > 1e-9).count();
-    svd.u.unwrap().columns(0, rank).into_owned()
+    match found.is_empty() {
+        true => DMatrix::zeros(columns.nrows(), 0),
+        false => DMatrix::from_columns(&found),
+    }
 }

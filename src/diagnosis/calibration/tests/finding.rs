@@ -189,6 +189,30 @@ fn a_misread_pose_beside_a_noisy_clamp_is_found() {
     }
 }
 
+/// Nothing in the robot's file loads joint 4 of a symmetrical wrist, so that no calibration shows
+/// how compliant it is. The forearm's centre of mass is where 20 % may be, beside its axis.
+#[test]
+fn what_a_centre_of_mass_loads_an_unloaded_drive_with_is_no_effect() {
+    const COMPLIANCE: f64 = 120e-6;
+    let clean = clamps(16);
+    let calibration = calibrate(&clean, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&clean, &calibration).unwrap();
+    let forearm = clean.robot.joints[3].body.unwrap();
+    let yields = |row: usize| {
+        let there = &context.configurations[row];
+        let aside: Vector3<f64> = (there.link[3].rotation.column(0) * 0.015).into();
+        let torque = there.axis[3].dot(&aside.cross(&(there.gravity * forearm.mass)));
+        there.tip_jacobian[3] * (COMPLIANCE * torque)
+    };
+    let most = (0..context.configurations.len()).map(|row| yields(row).norm()).fold(0.0, f64::max);
+    assert!(most > 60.0 * UM, "{most}");
+    for seed in [1, 2] {
+        let campaign = recorded(&clean, &yields, 12.0 * UM, seed);
+        let found = diagnose_as_recorded(&campaign, Mode::Fea, &Options::default()).unwrap().diagnosis;
+        assert!(!found.is_mismatch(), "seed {seed}: {:?} {:?}", found.findings, found.discrepancy);
+    }
+}
+
 /// A campaign that was recorded with the rod `actual` and has the file of [`ROD`].
 fn with_rod(actual: &str, seed: u64) -> Campaign {
     assert_ne!(actual, ROD);

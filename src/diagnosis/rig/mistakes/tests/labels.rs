@@ -166,6 +166,23 @@ fn keys_of_the_rod_and_other_rods_are_found() {
     cases.check();
 }
 
+/// A file's angle that is off by ten degrees was turned loads and turned sensors, or pipes that were
+/// exchanged.
+#[test]
+fn another_angle_between_the_pipes_is_a_mistake() {
+    for (file, degrees, seed) in [(ROD_2, 100.0, 1), (ROD_5, 100.0, 2), (ROD_5, 120.0, 3), (ROD_2, 90.0, 4)] {
+        let file = rod(file);
+        let bent = Rod { gamma: f64::to_radians(degrees), ..file.clone() };
+        let readings = recorded(&bent, Bench::Full, 700 + seed);
+        let found = crate::diagnosis::rig::diagnose_among(&readings, Some(&file), &[]).unwrap();
+        let names = found.diagnosis.findings.iter().map(|own| format!("{} {}", own.effect, own.location));
+        let expected: &[&str] = if degrees == 90.0 { &[] } else { &["angle_mistake gamma_deg"] };
+        assert_eq!(names.collect::<Vec<_>>(), expected, "{degrees}");
+        let said = found.diagnosis.findings.first().map(|own| own.description.observed.clone());
+        assert!(said.is_none_or(|said| said.contains(&format!(" is {degrees}°, not 90.00°"))), "{degrees}");
+    }
+}
+
 /// A clamp that lifts off under half of the loads bends the lines until their slopes are those of
 /// another rod, which leaves a third of what it explains: neither rod is the right one.
 #[test]

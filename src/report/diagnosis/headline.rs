@@ -107,7 +107,8 @@ fn scatter_of(subject: &Subject) -> String {
     }
 }
 
-/// `1.6 µm`; where it is far more than was stated, and does not contradict that, what of it is whose.
+/// `1.6 µm`; where it is far more than was stated, and does not contradict that, what of it is
+/// whose.
 fn noise(diagnosis: &Diagnosis) -> String {
     let (test, ratio) = (&diagnosis.noise_test, diagnosis.shared_ratio);
     let is_more = test.stated.is_some_and(|stated| diagnosis.noise > MORE_THAN_STATED * stated);

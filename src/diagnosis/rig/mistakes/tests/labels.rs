@@ -166,8 +166,8 @@ fn keys_of_the_rod_and_other_rods_are_found() {
     cases.check();
 }
 
-/// A file's angle that is off by ten degrees was turned loads and turned sensors, or pipes that were
-/// exchanged.
+/// A file's angle that is off by ten degrees was turned loads and turned sensors, or exchanged
+/// pipes.
 #[test]
 fn another_angle_between_the_pipes_is_a_mistake() {
     for (file, degrees, seed) in [(ROD_2, 100.0, 1), (ROD_5, 100.0, 2), (ROD_5, 120.0, 3), (ROD_2, 90.0, 4)] {

@@ -116,7 +116,7 @@ fn struck(line: &str, counts: &[usize]) {
     whole.run(line).succeeded();
     let new = whole.listing();
     let mut unstruck = 0;
-    let every_other = |kind: &str, k: usize| step.is_some() || (k % 2 == 0) == (kind == "fail");
+    let every_other = |kind: &str, k: usize| step.is_some() || k.is_multiple_of(2) == (kind == "fail");
     let strikes = ["fail", "kill"].into_iter().flat_map(|kind| {
         let own = counts.iter().enumerate().filter(move |(k, _)| every_other(kind, *k));
         own.map(move |(_, count)| (kind, count))

@@ -44,7 +44,7 @@ fn findings(subject: &Subject) -> Section {
         // what nothing can undo is said in full above, and no number says more
         let said = match is_undone(finding) {
             true => sentence(subject, finding),
-            false => format!("{}.", capital(&cause_at(finding))),
+            false => format!("{}.", capital(cause_at(finding))),
         };
         format!("{said} {}{next}", details(subject, k, finding))
     });

@@ -200,7 +200,7 @@ fn what_a_centre_of_mass_loads_an_unloaded_drive_with_is_no_effect() {
     let forearm = clean.robot.joints[3].body.unwrap();
     let yields = |row: usize| {
         let there = &context.configurations[row];
-        let aside: Vector3<f64> = (there.link[3].rotation.column(0) * 0.015).into();
+        let aside = there.link[3].rotation.column(0) * 0.015;
         let torque = there.axis[3].dot(&aside.cross(&(there.gravity * forearm.mass)));
         there.tip_jacobian[3] * (COMPLIANCE * torque)
     };

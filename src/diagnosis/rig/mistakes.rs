@@ -56,7 +56,7 @@ use crate::rod::Rod;
 /// let rod = Rod::read("rods/5.toml".as_ref())?;
 /// let text = std::fs::read_to_string("stiffness_data/5.csv")?.replace("load_kg", "load_n");
 /// let suspicions = suspected(&Readings::from_text("5.csv", &text)?, Some(&rod))?;
-/// assert!(suspicions[0].starts_with("load_n looks like kilograms"), "{suspicions:?}");
+/// assert!(suspicions[0].description.starts_with("load_n looks like kilograms"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///

@@ -8,6 +8,7 @@ pub mod limits;
 pub mod memory;
 pub mod prepared;
 pub mod tails;
+mod unit_of_force;
 
 use self::arrival::unknown_arrival;
 use self::beside::{calibrated_beside, unequal};
@@ -129,6 +130,7 @@ pub fn diagnose_calibrated<'c>(
         finding.next = next;
     }
     with_rivals(&mut diagnosis, rivals);
+    unit_of_force::add_rivals(&model, campaign.contact_force, &mut diagnosis);
     let law = propose(&model, &diagnosis, &|change| sites(&context, change.len()));
     let mut limits = limits(&context, &model.calibration, &evidence);
     limits.extend(look.scatter.iter().flat_map(|noise| noisy(campaign, noise)));

@@ -142,7 +142,7 @@ pub fn diagnose_with(
     another_rod::add_rivals(&others, &model, &mut diagnosis);
     if let Some(meant) = others.first().filter(|meant| meant.is_meant()) {
         let mut taken = mended.clone();
-        taken.take(meant.rod.clone(), meant.log_odds, meant.explains);
+        taken.take(meant.rod.clone(), meant.log_odds, meant.explains, meant.rivals.clone());
         let of_other = inferred(&taken, None)?;
         let (.., left) = &of_other;
         // of two rods that both leave something unexplained neither is the right one beyond doubt

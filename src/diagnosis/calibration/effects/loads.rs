@@ -29,11 +29,9 @@ const HEAVIER: f64 = 0.3;
 /// How far from level a robot stands that nobody has levelled, rad.
 const LEVEL: f64 = 0.5 * DEG;
 
-/// So many times as soft as its model a rod may be: more than a kilogram is newtons.
-const SOFTEST: f64 = 12.0;
-/// Units of a force, N; a rod that is hardly softer than its model is no sign of one.
-const UNITS_OF_FORCE: [(f64, &str); 2] = [(9.80665, "kilograms"), (4.448, "pounds")];
-const UNIT_FROM: f64 = 2.0;
+/// So many times as soft as its model a rod may seem: a force in kilograms, stated as newtons, makes
+/// it ten times softer.
+const MOST_SOFTNESS: f64 = 12.0;
 
 /// A rod that is softer or stiffer than its model.
 pub static ROD_STIFFNESS: CalibrationEffect = CalibrationEffect {
@@ -75,7 +73,7 @@ fn rods(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         factor.neutral = context.accounted;
         // a rod that was assumed rigid bends by all of its model
         factor.size = factor.size.max(1.0 - context.accounted);
-        factor.bounds = (0.0, SOFTEST);
+        factor.bounds = (0.0, MOST_SOFTNESS);
         let column = context.column(|row, _| {
             let [by_contact, by_weight] = context.deflection[row];
             match load {
@@ -120,16 +118,7 @@ fn rod_observed(finding: &Finding, model: &CalibrationModel) -> String {
     };
     let under = under.map_or_else(String::new, |under| format!(" {under}"));
     let softer = first(finding).map(|stiffness| 1.0 / stiffness).compared("softer", "stiffer");
-    // a force that is stated too small bends a rod as if it were softer
-    let times = finding.estimates.first().map(|stiffness| (1.0 / stiffness.high, 1.0 / stiffness.low));
-    let is_under_force = matches!(law(finding, model), Law::Rod(RodLoad::Contact));
-    let unit = times.filter(|_| is_under_force).and_then(|(low, high)| {
-        UNITS_OF_FORCE.iter().find(|(factor, _)| low.max(UNIT_FROM) < *factor && *factor < high)
-    });
-    let unit = unit.map_or_else(String::new, |(factor, unit)| {
-        format!(", as if contact_force_n were in {unit} ({factor} N each)")
-    });
-    format!("The rod is {softer} than its model{under}{unit}")
+    format!("The rod is {softer} than its model{under}")
 }
 
 /// `12 ± 2 g more`.

@@ -83,37 +83,33 @@ fn of_links(campaign: &Campaign, context: &Context) -> Vec<(NominalParameter, Co
         };
         let distance = body.centre.norm().max(LEAST_DISTANCE);
         let mut numbers = vec![(mass, context.column(|_, there| pulled(there)))];
-        numbers.extend(Axis::ALL.map(|axis| {
-            let centre = NominalParameter {
-                name: format!("centre of link {} along {axis}", k + 1),
-                unit: "mm",
-                si: MM,
-                value: body.centre[axis.index()],
-                standard_uncertainty: share * distance,
+        let mut centre =
+            |axis: Axis, by: &str, moved: &dyn Fn(&Configuration, &Vector3<f64>) -> Vector3<f64>| {
+                let centre = NominalParameter {
+                    name: format!("centre of link {} along {axis}{by}", k + 1),
+                    unit: "mm",
+                    si: MM,
+                    value: body.centre[axis.index()],
+                    standard_uncertainty: share * distance,
+                };
+                let column = context.column(|_, there| {
+                    moved(there, &there.link[k].rotation.column(axis.index()).into_owned())
+                });
+                numbers.push((centre, column));
             };
-            let column = context.column(|_, there| {
-                let along: Vector3<f64> = there.link[k].rotation.column(axis.index()).into();
-                there.joint_deflection_below(k, |_| along, &(there.gravity * body.mass))
+        for axis in Axis::ALL {
+            centre(axis, "", &|there, along| {
+                there.joint_deflection_below(k, |_| *along, &(there.gravity * body.mass))
             });
-            (centre, column)
-        }));
-        let uncertain = (0..=k).filter(|j| context.compliance_uncertainty[*j] > 0.0);
-        let drives = uncertain.flat_map(|j| Axis::ALL.map(|axis| (j, axis)));
-        numbers.extend(drives.map(|(j, axis)| {
-            let centre = NominalParameter {
-                name: format!("centre of link {} along {axis}, by the drive of joint {}", k + 1, j + 1),
-                unit: "mm",
-                si: MM,
-                value: body.centre[axis.index()],
-                standard_uncertainty: share * distance,
-            };
-            let column = context.column(|_, there| {
-                let along: Vector3<f64> = there.link[k].rotation.column(axis.index()).into();
-                let torque = there.axis[j].dot(&along.cross(&(there.gravity * body.mass)));
-                there.tip_jacobian[j] * (context.compliance_uncertainty[j] * torque)
-            });
-            (centre, column)
-        }));
+        }
+        for j in (0..=k).filter(|j| context.compliance_uncertainty[*j] > 0.0) {
+            for axis in Axis::ALL {
+                centre(axis, &format!(", by the drive of joint {}", j + 1), &|there, along| {
+                    let torque = there.axis[j].dot(&along.cross(&(there.gravity * body.mass)));
+                    there.tip_jacobian[j] * (context.compliance_uncertainty[j] * torque)
+                });
+            }
+        }
         numbers
     };
     let known = bodies.filter(|(_, body)| share > 0.0 && body.mass > 0.0);

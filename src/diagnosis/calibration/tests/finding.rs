@@ -3,7 +3,7 @@
 
 use super::evidence::noisy;
 use super::*;
-use crate::inference::{DiscrepancyModel, Effect, Finding, Linearised, infer};
+use crate::inference::{DiscrepancyModel, Effect, Finding, Linearised, Rival, infer};
 use crate::robot::{Kinematics, Setup};
 
 /// A coordinate's noise in the simulated campaigns, m: 30 µm of repeatability and 3 µm of sensors.
@@ -211,6 +211,25 @@ fn what_a_centre_of_mass_loads_an_unloaded_drive_with_is_no_effect() {
         let found = diagnose_as_recorded(&campaign, Mode::Fea, &Options::default()).unwrap().diagnosis;
         assert!(!found.is_mismatch(), "seed {seed}: {:?} {:?}", found.findings, found.discrepancy);
     }
+}
+
+/// What is stated as a tenth of the force makes a rod ten times too soft, or a force that differs.
+#[test]
+fn a_contact_force_in_kilograms_is_a_rival_of_what_is_named_for_it() {
+    let mut campaign = with_rods(ROD, ROD, Plan { poses_per_clamp: 25, seed: 4, ..Plan::default() });
+    let unit_is_rival = |campaign: &Campaign| {
+        let found = diagnose_as_recorded(campaign, Mode::Fea, &Options::default()).unwrap().diagnosis;
+        let is_it = |rival: &Rival| {
+            rival.effect.name == "unit_mistake" && rival.location.to_string() == "contact_force_n"
+        };
+        found.findings.iter().any(|own| own.rivals.iter().any(is_it))
+    };
+    assert!(!unit_is_rival(&campaign));
+    campaign.contact_force = campaign.contact_force.map(|force| force / crate::units::STANDARD_GRAVITY);
+    assert!(unit_is_rival(&campaign));
+    // no unit of a force is half of a newton
+    campaign.contact_force = campaign.contact_force.map(|force| 5.0 * force);
+    assert!(!unit_is_rival(&campaign));
 }
 
 /// A campaign that was recorded with the rod `actual` and has the file of [`ROD`].

@@ -5,12 +5,19 @@
 //! the given one with its lengths or pipes exchanged, are compared in full: each with all effects,
 //! by the probability that the recording then has.
 
+use crate::diagnosis::rig::effects::load::LOAD_MISALIGNMENT;
+use crate::diagnosis::rig::effects::sensor::SENSOR_MISALIGNMENT;
+use crate::diagnosis::rig::mechanics::action::Action;
 use crate::diagnosis::rig::mistakes::{Mended, ODDS, OtherRod, RARE};
 use crate::diagnosis::rig::model::RigModel;
 use crate::diagnosis::rig::model::wanted::Wanted;
 use crate::error::Result;
-use crate::inference::{Compared, Diagnosis, Evidence, Finding, Kind, Location, Rival, rms};
+use crate::inference::{
+    Compared, Diagnosis, Evidence, Finding, ForwardModel, Kind, Location, Part, Rival, rms,
+};
 use crate::rod::Rod;
+use crate::spatial::Axis;
+use crate::units::DEG;
 
 /// Ln of the odds within which two rods are indistinguishable: 20.
 const ALIKE: f64 = 2.995_732;
@@ -28,6 +35,8 @@ pub struct Other {
     pub log_odds: f64,
     /// How far what it says of the readings is from what the given one says, m (rms).
     pub explains: f64,
+    /// What the readings do not distinguish from it.
+    pub rivals: Vec<Rival>,
 }
 
 impl Other {
@@ -54,12 +63,8 @@ pub fn others(
     diagnosis: &Diagnosis,
 ) -> Result<Vec<Other>> {
     let mut found = Vec::new();
-    if diagnosis.discrepancy.is_none()
-        && !diagnosis
-            .findings
-            .iter()
-            .any(|finding| is_of_the_rod(model, finding) || is_a_turn(model, finding))
-    {
+    let may_be_another = |finding: &Finding| is_of_the_rod(model, finding) || is_a_turn(model, finding);
+    if diagnosis.discrepancy.is_none() && !diagnosis.findings.iter().any(may_be_another) {
         return Ok(found);
     }
     let Some(given) = mended.rod.as_ref().filter(|_| !mended.others.is_empty()) else { return Ok(found) };
@@ -80,7 +85,18 @@ pub fn others(
         }
         let log_odds = compared.log_odds(&other, &of_other) + meant.log_prior + RARE;
         let explains = rms(&(&evidence.residual - &of_other.residual));
-        found.push(Other { rod: meant, log_odds, explains });
+        let mut rivals = Vec::new();
+        if meant.is_angled() {
+            let by = meant.rod.gamma - given.gamma;
+            let turned = turned_in_mount(model, evidence, &compared, by);
+            let lead = turned.map_or(f64::INFINITY, |turned| log_odds - turned - meant.log_prior - RARE);
+            // what is likelier turned is named for that
+            if lead < -ALIKE {
+                continue;
+            }
+            rivals.extend((lead < ALIKE).then(|| turned_frames(lead.exp().max(1.0))).into_iter().flatten());
+        }
+        found.push(Other { rod: meant, log_odds, explains, rivals });
     }
     found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
     Ok(found)
@@ -88,14 +104,54 @@ pub fn others(
 
 /// Where two rods are indistinguishable, what makes the given one fit has the other as its rival.
 pub fn add_rivals(others: &[Other], model: &RigModel, diagnosis: &mut Diagnosis) {
-    for finding in diagnosis.findings.iter_mut().filter(|finding| is_of_the_rod(model, finding)) {
-        for other in others.iter().filter(|other| other.log_odds > -ALIKE) {
+    for finding in &mut diagnosis.findings {
+        let (is_of_the_rod, is_a_turn) = (is_of_the_rod(model, finding), is_a_turn(model, finding));
+        let explains = |other: &&Other| is_of_the_rod || (is_a_turn && other.rod.is_angled());
+        for other in others.iter().filter(explains).filter(|other| other.log_odds > -ALIKE) {
             let location = Location::from(other.rod.location.clone());
             let odds = (-other.log_odds).exp().max(1.0);
             // a file is sooner looked at than anything is measured
             finding.rivals.insert(0, Rival::without_term(other.rod.effect, location, odds));
+            // what is as likely as that rod is as likely as what is named
+            let known = |rival: &Rival| finding.rivals.iter().any(|own| own.effect == rival.effect);
+            let new: Vec<_> = other.rivals.iter().filter(|rival| !known(rival)).cloned().collect();
+            finding.rivals.extend(new.into_iter().filter(|rival| rival.effect != finding.effect));
         }
     }
+}
+
+/// A rod that is turned about y in its mount: to it loads and sensors are turned together, which
+/// the library has as two effects and prices as two.
+fn turned_frames(odds: f64) -> [Rival; 2] {
+    [(&LOAD_MISALIGNMENT, Part::LoadFrame), (&SENSOR_MISALIGNMENT, Part::Sensors)]
+        .map(|(own, part)| Rival::without_term(&own.effect, Location::Part(part), odds))
+}
+
+/// Ln of the odds for such a rod, turned by about as much either way as its angle would have to be
+/// another one (rad), before what is known of either; `None` where nothing was turned to it.
+fn turned_in_mount(model: &RigModel, evidence: &Evidence, compared: &Compared, by: f64) -> Option<f64> {
+    const BESIDE_DEG: i32 = 4;
+    let frame = |is_it: &dyn Fn(&Action) -> bool| {
+        let index =
+            model.actions.iter().position(|actions| actions.len() > 1 && actions.iter().any(is_it))?;
+        Some((index, model.actions[index].iter().position(is_it)?))
+    };
+    let frames = [
+        frame(&|action| matches!(action, Action::TurnLoad(_, Axis::Z, Axis::X)))?,
+        frame(&|action| matches!(action, Action::TurnSensors(Axis::Z, Axis::X)))?,
+    ];
+    let left = |angle: f64| {
+        let terms = frames.map(|(index, number)| {
+            let mut term = model.candidates[index].neutral(index);
+            term.values[number] = angle;
+            term
+        });
+        &evidence.residual - model.response(&terms)
+    };
+    let steps = (-BESIDE_DEG..=BESIDE_DEG).map(|step| by.abs() + f64::from(step) * DEG);
+    let either_way = steps.flat_map(|angle| [angle, -angle]).map(left);
+    let residual = either_way.min_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+    Some(compared.log_odds(model, &Evidence { residual, ..evidence.clone() }))
 }
 
 /// Loads and sensors that are turned: so is the plane of a rod with another angle.

@@ -84,14 +84,14 @@ impl Mended {
 
     /// Takes another rod for the one that was meant: its predictions differ by `explains` (m, rms)
     /// from those before.
-    pub fn take(&mut self, meant: OtherRod, log_odds: f64, explains: f64) {
+    pub fn take(&mut self, meant: OtherRod, log_odds: f64, explains: f64, rivals: Vec<Rival>) {
         let OtherRod { rod, effect, location, observed, .. } = meant;
         self.rod = Some(rod);
         self.others.clear();
         self.found.push(Finding {
             explains,
             p_value: (-log_odds).exp(),
-            ..finding(effect, location, Vec::new(), observed, Vec::new())
+            ..finding(effect, location, Vec::new(), observed, rivals)
         });
     }
 

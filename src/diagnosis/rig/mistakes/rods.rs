@@ -13,7 +13,6 @@ use super::relabelling::Relabelling;
 use crate::diagnosis::rig::effects::mistakes::{ANGLE_MISTAKE, ROD_MISTAKE, SWAP_MISTAKE};
 use crate::inference::{Effect, Key};
 use crate::rod::Rod;
-use crate::units::significant;
 
 /// Another rod is no unit: what remains must be as files are.
 const OTHER: f64 = 1.1;
@@ -95,9 +94,9 @@ impl OtherRod {
             effect: &ANGLE_MISTAKE,
             location: Key::new("gamma_deg"),
             observed: format!(
-                "The angle between the pipes is {degrees:.0}°, not {}°: write gamma_deg = {degrees:.1} if a \
+                "The angle between the pipes is {degrees:.0}°, not {}°: write gamma_deg = {degrees:.1} once a \
                  measurement confirms it",
-                significant(file, 4)
+                (100.0 * file).round() / 100.0
             ),
             log_prior: OTHER_ANGLE,
         }

@@ -9,7 +9,7 @@ use super::mended::Mended;
 use super::*;
 use crate::diagnosis::rig::model::RigModel;
 use crate::diagnosis::rig::model::wanted::Wanted;
-use crate::inference::{Finding, ForwardModel, Location, Term};
+use crate::inference::{Candidate, Finding, ForwardModel, Location, Part, Term};
 use crate::rig::readings::{Axis, Direction, Phase, Reading};
 use crate::section::Round;
 use crate::statistics::Random;

@@ -5,14 +5,13 @@ use super::super::draft::DraftChange;
 use super::{List, Other, UNUSUAL, exact};
 use crate::calibration::campaign::Campaign;
 use crate::inference::Key;
-use crate::units::STANDARD_GRAVITY;
+use crate::units::{POUND_FORCE, STANDARD_GRAVITY};
 
-/// A pound, a gram and a thousandth of a newton, N.
-const POUND: f64 = 4.448_222;
+/// A gram and a thousandth of a newton, N.
 const GRAM: f64 = STANDARD_GRAVITY / 1e3;
 const MILLINEWTON: f64 = 1e-3;
 const FACTORS: [f64; 8] =
-    [-1.0, 0.1, 10.0, STANDARD_GRAVITY, 1.0 / STANDARD_GRAVITY, POUND, GRAM, MILLINEWTON];
+    [-1.0, 0.1, 10.0, STANDARD_GRAVITY, 1.0 / STANDARD_GRAVITY, POUND_FORCE, GRAM, MILLINEWTON];
 
 /// What the contact force may have to be multiplied by; nothing where none is stated.
 pub fn forces(campaign: &Campaign) -> Vec<f64> {
@@ -33,7 +32,7 @@ impl List<'_> {
                 )
             } else if factor == STANDARD_GRAVITY {
                 (&UNIT_MISTAKE, format!("Multiply {KEY} by 9.80665"), "it is in kilograms, not in newtons")
-            } else if factor == POUND {
+            } else if factor == POUND_FORCE {
                 (&UNIT_MISTAKE, format!("Multiply {KEY} by 4.448"), "it is in pounds, not in newtons")
             } else if factor == GRAM {
                 (&UNIT_MISTAKE, format!("Divide {KEY} by 102"), "it is in grams, not in newtons")

@@ -9,7 +9,7 @@ use crate::diagnosis::rig::recording::columns::{axis_rows, columns, load_column}
 use crate::inference::Key;
 use crate::rig::readings::LoadColumn;
 use crate::spatial::Axis;
-use crate::units::STANDARD_GRAVITY;
+use crate::units::{POUND_FORCE, STANDARD_GRAVITY};
 
 /// A unit that a column may have instead of its own.
 struct Unit {
@@ -52,8 +52,6 @@ const fn unit(name: &'static str, factor: f64, log_prior: f64, cure: Cure) -> Un
     Unit { name, factor, log_prior, cure, or_else: None, within: BESIDE }
 }
 
-const POUND: f64 = 4.448_221_615_260_5;
-
 /// Instead of newtons.
 const FOR_NEWTONS: [Unit; 7] = [
     Unit {
@@ -61,8 +59,8 @@ const FOR_NEWTONS: [Unit; 7] = [
         ..unit("kilograms", STANDARD_GRAVITY, 0.0, Multiply("9.80665"))
     },
     unit("grams", 1e-3 * STANDARD_GRAVITY, -0.5, Multiply("0.00980665")),
-    Unit { within: BESIDE_PHYSICS, ..unit("pounds (lbf)", POUND, 0.0, Multiply("4.4482216")) },
-    Unit { within: HARDLY_BESIDE, ..unit("ounces (ozf)", POUND / 16.0, -2.0, Multiply("0.27801385")) },
+    Unit { within: BESIDE_PHYSICS, ..unit("pounds (lbf)", POUND_FORCE, 0.0, Multiply("4.4482216")) },
+    Unit { within: HARDLY_BESIDE, ..unit("ounces (ozf)", POUND_FORCE / 16.0, -2.0, Multiply("0.27801385")) },
     unit("kilonewtons", 1e3, -2.0, Multiply("1000")),
     unit("millinewtons", 1e-3, -1.5, Divide("1000")),
     unit("newtons that were converted once more", 1.0 / STANDARD_GRAVITY, -0.5, Divide("9.80665")),

@@ -326,6 +326,22 @@ fn an_effect_is_confirmed_where_the_number_in_its_place_cannot_be_so_far_off() {
     }
 }
 
+/// What fits the data no better than a number three of its uncertainties off is that number: a file
+/// may state it twice too well.
+#[test]
+fn an_effect_that_fits_no_better_than_a_number_in_its_place_is_none() {
+    let mut model = Columns::new(COUNT);
+    model.add("slope", "here", column(|x| 10.0 * x), false);
+    let number =
+        NominalParameter { name: "E".into(), unit: "GPa", si: 1e9, value: 193e9, standard_uncertainty: 2e9 };
+    for seed in 0..20 {
+        let nominal_numbers = vec![number.clone()];
+        let plain = evidence(seed, |x| 50.0 * 4.2 * x);
+        let found = diagnose(&model, &Evidence { nominal: column(|x| 50.0 * x), nominal_numbers, ..plain });
+        assert_eq!(effects(&found), [""; 0], "seed {seed}");
+    }
+}
+
 /// A slope that the base model has, and a column that is nearly the same: what it explains is what
 /// the base model could not.
 #[test]
@@ -378,6 +394,18 @@ fn a_name_that_hides_something_unknown_is_given_up() {
     };
     let right = (0..20).filter(is_right).count();
     assert!(right >= 19, "{right} of 20");
+}
+
+/// A law that is not quite the right one has its name, where a curve that is would be as likely.
+#[test]
+fn a_law_that_is_nearly_right_is_named_and_not_the_curve_that_is() {
+    let mut model = Columns::new(COUNT);
+    let right = |x: f64| x * x + 0.006 * (9.0 * x).sin();
+    model.add("law", "", column(|x| x * x), false);
+    model.add("curve", "x", column(right), true);
+    let is_named = |&seed: &u64| effects(&diagnose(&model, &evidence(seed, |x| 60.0 * right(x)))) == ["law"];
+    let named = (0..20).filter(is_named).count();
+    assert!(named >= 19, "{named} of 20");
 }
 
 #[test]

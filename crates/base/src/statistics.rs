@@ -7,12 +7,14 @@ mod bootstrap;
 mod estimate;
 mod normal;
 mod random;
+mod unrounded;
 
 pub use bartlett::bartlett;
 pub use bootstrap::percentile_interval;
 pub use estimate::Estimate;
 pub use normal::ln_normal_mass;
 pub use random::Random;
+pub use unrounded::unrounded;
 
 use statrs::function::beta::beta_reg;
 use statrs::function::gamma::gamma_ur;

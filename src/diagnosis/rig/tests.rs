@@ -3,6 +3,7 @@
 
 mod files;
 mod load;
+mod named;
 mod reading;
 mod structure;
 

@@ -14,6 +14,9 @@ use crate::inference::{ForwardModel, HeldOut, Hypothesis, Kind, Term};
 /// once says nothing of other data. Nor do they speak against an effect in whose place the numbers
 /// of the file would be as far off as they cannot be: these predict as well as it does.
 ///
+/// Nor has a name what fits the data no better than the numbers of the file do in its place, where
+/// these may be so far off: that a file states its numbers twice too well is as likely.
+///
 /// Where a curve would then be left that is less likely than what it takes the place of, by the
 /// odds of a name, the names stay: something is there, and this is likelier.
 ///
@@ -30,17 +33,26 @@ pub fn confirmed(
     let Some(held_out) = held_out else { return (hypothesis, before_that) };
     let needless: Vec<&[Theme]> =
         held_out.losses_together().filter(|(_, loss)| *loss <= 0.0).map(|(themes, _)| themes).collect();
-    let takes_numbers_place = |own: Theme| {
+    let without = |own: Theme| {
         let is_other = |term: &&Term| Theme::new(&model.candidates()[term.candidate]) != own;
-        let others: Vec<Term> = hypothesis.terms.iter().filter(is_other).cloned().collect();
-        folded.is_implausible(&search.fit(&others)) && !folded.is_implausible(&hypothesis)
+        search.fit(&hypothesis.terms.iter().filter(is_other).cloned().collect::<Vec<_>>())
+    };
+    let takes_numbers_place =
+        |others: &Hypothesis| folded.is_implausible(others) && !folded.is_implausible(&hypothesis);
+    // ln of the likelihoods' ratio: what the data themselves say for a name
+    let fits_no_better = |others: &Hypothesis| {
+        let [more, less] = [others, &hypothesis].map(|own| search.left_square(own));
+        (more - less) / (2.0 * hypothesis.sigma.powi(2)) < NAMED.ln() && !folded.is_implausible(others)
     };
     let is_confirmed = |term: &Term| {
         let candidate = &model.candidates()[term.candidate];
         let own = Theme::new(candidate);
         let is_needed =
             held_out.independent_loss(own) > 0.0 && !needless.iter().any(|themes| themes.contains(&own));
-        candidate.effect.kind == Kind::Event || is_needed || takes_numbers_place(own)
+        candidate.effect.kind == Kind::Event || {
+            let others = without(own);
+            (is_needed && !fits_no_better(&others)) || takes_numbers_place(&others)
+        }
     };
     let is_found_again = |term: &Term| {
         let candidate = &model.candidates()[term.candidate];

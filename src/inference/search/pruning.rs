@@ -14,11 +14,11 @@ use crate::inference::search::Search;
 use crate::inference::search::hidden_in_correlation::hidden_in_correlation;
 use crate::inference::search::hidden_in_groups::hidden;
 use crate::inference::search::misread::unlike_repeats;
-use crate::inference::search::selection::{DiscrepancyModel, Pairs};
+use crate::inference::search::selection::{DiscrepancyModel, LITTLE, Pairs};
 use crate::inference::{Evidence, ForwardModel, Term};
 
-/// What is left is little: as a share of what an effect explains, and of the noise.
-const LITTLE: (f64, f64) = (0.1, 0.5);
+/// What is left is little, as a share of the noise.
+const LITTLE_IN_NOISE: f64 = 0.5;
 
 /// An effect that a curve cannot draw has a name beside one that explains at most so many times as
 /// much.
@@ -146,7 +146,7 @@ fn convincing(
             DiscrepancyModel::Replicates => own(&hypothesis, position),
         };
         beside_curve > BESIDE * left
-            || left < (LITTLE.0 * own(&hypothesis, position)).max(LITTLE.1 * hypothesis.sigma)
+            || left < (LITTLE * own(&hypothesis, position)).max(LITTLE_IN_NOISE * hypothesis.sigma)
     };
     let kept: Vec<Term> =
         (0..hypothesis.terms.len()).filter(|&k| is_kept(k)).map(|k| hypothesis.terms[k].clone()).collect();
@@ -159,7 +159,7 @@ fn convincing(
 }
 
 /// A hypothesis without events (a reading, or the three coordinates of a pose) that are no farther
-/// out than the tails of this recording's noise coverage_factor.
+/// out than the tails of this recording's noise reach.
 ///
 /// Where the other residuals have more kurtosis than a normal distribution, by three standard
 /// errors √(24/n), a datum has to be twice as far out as any of them.
@@ -187,6 +187,13 @@ fn beyond_the_tails(search: &Search, hypothesis: Hypothesis) -> Hypothesis {
 }
 
 impl Search<'_> {
+    /// Sum of the weighted squares of what a hypothesis leaves.
+    pub fn left_square(&self, hypothesis: &Hypothesis) -> f64 {
+        let predicted = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
+        let left = &self.evidence.residual - predicted;
+        left.iter().zip(&self.evidence.weight).map(|(left, weight)| weight * left * left).sum()
+    }
+
     /// Root mean square of what a hypothesis leaves.
     pub fn left_rms(&self, hypothesis: &Hypothesis) -> f64 {
         let predicted = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));

@@ -3,7 +3,7 @@
 
 use crate::inference::score::priors::PRIOR;
 use crate::inference::search::Search;
-use crate::inference::{ForwardModel, Hypothesis, Kind, Term};
+use crate::inference::{Effect, ForwardModel, Hypothesis, Kind, Term};
 use crate::parallel::in_parallel_outside_of_jobs;
 
 /// Odds against chance from which on an effect is named.
@@ -13,6 +13,8 @@ pub const APART: f64 = 20.0;
 /// A hypothesis of known effects explains as well as one that leaves something unknown within these
 /// odds, if it leaves at most so much more, as a factor, per degree of freedom.
 const AS_WELL: (f64, f64) = (20.0, 1.01);
+/// Share of what names explain that a curve may draw better.
+pub const LITTLE: f64 = 0.1;
 /// Standard deviations of what more degrees of freedom take by chance that count as chance.
 const CHANCE: f64 = 3.0;
 /// Most effects in one hypothesis.
@@ -30,6 +32,11 @@ const NO_GAIN: f64 = 1e-3;
 
 /// Odds against chance that make an effect, or a second one beside it, worth a try.
 const HOPELESS: f64 = 1.0 / 400.0;
+
+/// So many names may be those of fewer effects that were not found, and so many other effects are
+/// tried as the first of them.
+const MANY: usize = 3;
+const OTHER_STARTS: usize = 2;
 
 /// By how much the odds of a name may be shared among effects that explain the same.
 const MOST_SHARED: f64 = 10.0;
@@ -160,13 +167,46 @@ impl Search<'_> {
             (is_likelier || by_steps.left_over.is_some())
                 && !by_steps.visited.iter().any(|visited| visited.is_same(pair))
         };
-        let Some(pair) = pair.filter(is_new) else { return (by_steps.hypothesis, by_steps.left_over) };
-        let by_pair = self.along(vec![none, pair]);
-        let better = match by_pair.log_probability > by_steps.log_probability + 1e-6 {
-            true => by_pair,
-            false => by_steps,
+        let pair = pair.filter(is_new);
+        let likelier = |way: Way, other: Way| {
+            if other.log_probability > way.log_probability + 1e-6 { other } else { way }
         };
-        (better.hypothesis, better.left_over)
+        let mut best = by_steps;
+        if let Some(pair) = pair {
+            best = likelier(best, self.along(vec![none.clone(), pair]));
+        }
+        let is_doubtful = best.left_over.is_some() || best.hypothesis.terms.len() >= MANY;
+        if pairs == Pairs::Screened && is_doubtful {
+            for pair in self.other_starts(&best, additions) {
+                best = likelier(best, self.along(vec![none.clone(), pair]));
+            }
+        }
+        (best.hypothesis, best.left_over)
+    }
+
+    /// Pairs that are likelier than those that the way has gone by, each of another effect, the best
+    /// by itself, and the best beside it: one that was taken for all of what two together do is not
+    /// exchanged for both.
+    fn other_starts(&self, way: &Way, additions: &[f64]) -> Vec<Hypothesis> {
+        let effect = |candidate: usize| self.model.candidates()[candidate].effect;
+        let short = || way.visited.iter().filter(|own| own.0.len() <= 2);
+        let least = short().fold(f64::NEG_INFINITY, |most: f64, own| most.max(own.1));
+        let mut known: Vec<&Effect> = Vec::new();
+        known.extend(short().filter(|own| own.0.len() == 1).map(|own| effect(own.0[0])));
+        let (mut tried, mut pairs) = (0, Vec::new());
+        for index in self.likeliest(additions, false) {
+            if tried == OTHER_STARTS || additions[index] < NAMED.ln() {
+                break;
+            }
+            if !known.contains(&effect(index)) {
+                known.push(effect(index));
+                tried += 1;
+                let start = self.fit(&[self.model.candidates()[index].neutral(index)]);
+                let pair = self.longer(&start, &self.additions(&start), false);
+                pairs.extend(pair.filter(|pair| pair.log_probability > least + NO_GAIN));
+            }
+        }
+        pairs
     }
 
     /// Effects that are named beside a curve, the last of `longer`: what is hidden by something
@@ -235,17 +275,26 @@ impl Search<'_> {
         let last = path.len() - 1;
         if let Some((_, DiscrepancyModel::Curve(longer))) = &remainders[named]
             && path[last].log_probability + AS_WELL.0.ln() > most
-            && self.leaves_as_little(&path[last], longer)
+            && self.leaves_as_little(&path[last], &path[named], longer)
         {
             let hypothesis = path.swap_remove(last);
             return Way { hypothesis, left_over: None, log_probability: most, visited };
         }
-        // beside something unknown a name needs its odds like any other
+        // beside something unknown a name needs its odds like any other, unless the names explain
+        // by themselves what the unknown would in their place
+        let explains_as_well = |k: usize| match &remainders[k] {
+            Some((whole, DiscrepancyModel::Curve(longer))) => {
+                path[named].log_probability + AS_WELL.0.ln() > *whole
+                    && self.leaves_as_little(&path[named], &path[k], longer)
+            }
+            _ => false,
+        };
         let has_less = |&k: &usize| {
             remainders[named].is_some()
                 && remainders[k].is_some()
                 && wholes[k] + NAMED.ln() > most
                 && path[k].terms.len() < path[named].terms.len()
+                && !explains_as_well(k)
         };
         let named = (0..path.len()).filter(has_less).min_by_key(|&k| path[k].terms.len()).unwrap_or(named);
         let left_over = remainders.swap_remove(named).map(|(_, remainder)| remainder);
@@ -260,10 +309,17 @@ impl Search<'_> {
         named.map(|position| self.without(hypothesis, position)).collect()
     }
 
-    /// Does a hypothesis leave as little, per degree of freedom, as a curve with more of them does?
-    /// By chance that leaves less by √(2·more)/2ν, one standard deviation.
-    fn leaves_as_little(&self, hypothesis: &Hypothesis, longer: &Hypothesis) -> bool {
+    /// Does a hypothesis leave as little, per degree of freedom, as a curve beside the `shorter` one
+    /// does, which has more of them? By chance that leaves less by √(2·more)/2ν, one standard
+    /// deviation. Or is what the curve draws better little beside what the names explain: a law that
+    /// is not quite the right one?
+    fn leaves_as_little(&self, hypothesis: &Hypothesis, shorter: &Hypothesis, longer: &Hypothesis) -> bool {
         let all = self.degrees_of_freedom().max(1) as f64;
+        let [left, with_curve, without] = [hypothesis, longer, shorter].map(|own| self.left_rms(own));
+        let square = |more: f64, less: f64| more.powi(2) - less.powi(2);
+        if square(left, with_curve) < LITTLE.powi(2) * square(without, left) {
+            return true;
+        }
         let per_freedom =
             |own: &Hypothesis| self.left_rms(own) / (1.0 - own.determined / all).max(f64::EPSILON).sqrt();
         let more = (longer.determined - hypothesis.determined).max(1.0);

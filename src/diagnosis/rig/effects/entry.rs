@@ -59,6 +59,8 @@ pub(in crate::diagnosis::rig) struct Context<'a> {
     pub rod: Option<&'a Rod>,
     /// How many times as stiff as its file the rod is at first sight; 1 unless far off.
     pub stiffness: f64,
+    /// The same, however near to 1 it is.
+    pub at_first_sight: f64,
 }
 
 /// A candidate with what its parameters do.

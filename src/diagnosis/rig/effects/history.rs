@@ -11,6 +11,7 @@ use crate::diagnosis::rig::mechanics::load_history::{
 use crate::diagnosis::rig::mechanics::recovery::recovery;
 use crate::diagnosis::rig::model::{Body, RigModel};
 use crate::inference::{Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
+use crate::statistics::median;
 use crate::units::significant;
 
 /// Share of the displacement at the largest load that is not linear.
@@ -21,6 +22,7 @@ const PER_DECADE: f64 = 0.03;
 const CREEP_STARTS: [f64; 4] = [1.0, 10.0, 60.0, 600.0];
 /// Growth of the deflection per kelvin.
 const PER_KELVIN: f64 = 5e-4;
+const MOST_PER_KELVIN: f64 = 0.02;
 /// Most runs whose onset of creep is found, each for itself; and how long before its first reading,
 /// in usual steps of time.
 const MOST_ONSETS: usize = 12;
@@ -114,8 +116,8 @@ pub static THERMAL_SOFTENING: RigEffect = RigEffect {
     usual: &[Usual::Share(PER_KELVIN)],
     needs_rod: false,
     candidates: |context| {
-        // a laminate may stiffen: ten times the usual either way
-        let per_kelvin = parameter("per_k", 0.0, PER_KELVIN, (-10.0 * PER_KELVIN, 10.0 * PER_KELVIN));
+        // a laminate may stiffen, and a plastic near its glass transition loses 1 to 2 % per kelvin
+        let per_kelvin = parameter("per_k", 0.0, PER_KELVIN, (-MOST_PER_KELVIN, MOST_PER_KELVIN));
         let softening = |memory| {
             let action = Action::Memory(memory, History::Temperature);
             entry(&THERMAL_SOFTENING, Location::Part(Part::Rod), per_kelvin, action)
@@ -136,7 +138,7 @@ pub static HYSTERESIS: RigEffect = RigEffect {
         name: "hysteresis",
         kind: Kind::Physics,
         summary: "unloading differs from loading, and not by friction",
-        formula: "a loop h of full scale wide at half load, in seven forms",
+        formula: "a loop h of full scale wide at half load, in eight forms",
         prior: "2 % of full scale: 0.1 % of a load cell, some per cent of bonds and clamps",
         parameters: &[(&["fraction"], "h, width of the loop over full scale")],
         needs: "unloading (column `phase`)",
@@ -203,8 +205,9 @@ fn creeping(context: &mut Context) -> Vec<Entry> {
         for &clock in clocks.iter().filter(|clock| **clock != Clock::UnknownOnset || t0 == ONSET_START) {
             let Some(mut memory) = creep(context.data, clock, t0) else { continue };
             if let Clock::AllLoads(when) = clock {
-                let Some(left) = recovery(context.data, when, t0, context.stiffness) else { continue };
+                let Some(left) = recovery(context.data, when, t0, context.at_first_sight) else { continue };
                 memory.recovery = left;
+                memory.usual = median(&memory.relative).unwrap_or_default();
             }
             // two clocks that show the same time are one
             let is_free = clock == Clock::UnknownOnset;

@@ -9,6 +9,7 @@ use super::entry::{
 use super::load::{ALIGNMENT, TURNS, WIDEST, misalignment, pairs, whole_turn};
 use super::places::measured_channels;
 use crate::diagnosis::rig::mechanics::action::{Action, DriftPer};
+use crate::diagnosis::rig::mechanics::load_history::dwell;
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::spatial::Axis;
@@ -51,6 +52,8 @@ const SETTLING: [(f64, [&str; 2]); 6] = [
 const SETTLED: f64 = 3.0;
 /// How often a drift settles within a recording, in one of these forms, for one at one rate.
 const RARELY_SETTLES: f64 = 0.15;
+/// How often a drift goes with time where the temperature was read, for one that goes with that.
+const NOT_THERMAL: f64 = 0.1;
 
 /// A sensor that shows too much or too little.
 pub static SENSOR_SCALE: RigEffect = RigEffect {
@@ -145,14 +148,14 @@ pub static SENSOR_MISALIGNMENT: RigEffect = RigEffect {
     write: out_of_the_readings,
 };
 
-/// Readings that follow temperature, or time where no temperature was read.
+/// Readings that follow temperature or time.
 pub static THERMAL_DRIFT: RigEffect = RigEffect {
     effect: Effect {
         name: "thermal_drift",
         kind: Kind::Physics,
         summary: "the readings follow temperature or time",
         formula: "y + d·(T − T₀), y + d·(t − t₀), or y + d·(1 − e^(−(t − t₀)/τ))/(1 − e^(−D/τ)) over the \
-            duration D; zero at the first reading of file or run",
+            duration D; zero when file or run were zeroed, a step before their first load",
         prior: "2 % of the largest reading over the recording: steel of 0.5 m grows by 6 µm/K",
         parameters: &[
             (&["um_per_k"], "drift per kelvin"),
@@ -236,24 +239,41 @@ struct Course {
     forms: [Option<&'static str>; 2],
     /// True for one of several forms with the same parameters.
     is_settling: bool,
+    /// How often it is so, of drifts in sensors whose temperature was read, or was not.
+    weight: f64,
 }
 
-/// With temperature, or else with time: at one rate, and ever more slowly until it has settled.
+/// With temperature and with time: at one rate, and with time ever more slowly until it has settled.
 fn courses(context: &Context) -> Vec<Course> {
     let data = context.data;
-    let known = |value: &dyn Fn(&Datum) -> Option<f64>| data.iter().map(value).collect::<Option<Vec<f64>>>();
-    let (values, per) = match (known(&|d| d.temperature), known(&|d| d.time)) {
-        (Some(temperature), _) => (temperature, DriftPer::Kelvin),
-        (None, Some(time)) => (time, DriftPer::Hour),
-        (None, None) => return Vec::new(),
+    let known = |value: &dyn Fn(&Datum) -> Option<f64>| {
+        let values = data.iter().map(value).collect::<Option<Vec<f64>>>()?;
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        (most > least).then_some((values, least, most))
     };
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if most <= least {
-        return Vec::new();
-    }
     let drift = DRIFT * context.largest_reading();
-    let settling = |(share, forms): (f64, [&'static str; 2])| {
+    let at_one_rate = |(values, least, most): &(Vec<f64>, f64, f64), per, forms, weight| Course {
+        values: values.clone(),
+        per,
+        size: drift / (most - least),
+        forms,
+        is_settling: false,
+        weight,
+    };
+    let (temperature, time) = (known(&|d| d.temperature), known(&|d| d.time));
+    let since_zero = [None, Some("since the zero of each run")];
+    // what drifts while its temperature is read follows that, as a rule
+    let (of_time, weight) = match &temperature {
+        Some(_) => ([Some("with time"), Some("with time since the zero of each run")], NOT_THERMAL),
+        None => (since_zero, 1.0),
+    };
+    let mut courses = Vec::new();
+    courses.extend(temperature.as_ref().map(|values| at_one_rate(values, DriftPer::Kelvin, since_zero, 1.0)));
+    let Some(time) = time else { return courses };
+    courses.push(at_one_rate(&time, DriftPer::Hour, of_time, weight));
+    let (values, least, most) = time;
+    courses.extend(SETTLING.into_iter().map(|(share, forms)| {
         // e^(−(t − t₀)/τ)
         let left = |t: f64| (-SETTLED * (t - least) / (share * (most - least))).exp();
         let whole = 1.0 - left(most);
@@ -263,53 +283,69 @@ fn courses(context: &Context) -> Vec<Course> {
             size: drift,
             forms: forms.map(Some),
             is_settling: true,
+            weight: weight * RARELY_SETTLES,
         }
-    };
-    let settling: Vec<Course> = match per {
-        DriftPer::Hour => SETTLING.into_iter().map(settling).collect(),
-        DriftPer::Kelvin | DriftPer::Recording => Vec::new(),
-    };
-    let forms = [None, Some("since the zero of each run")];
-    let at_one_rate = Course { per, size: drift / (most - least), forms, is_settling: false, values };
-    std::iter::once(at_one_rate).chain(settling).collect()
+    }));
+    courses
 }
 
-/// Of each channel, and of all of them: since the first reading of the file, and since the first of
-/// each run, for a run begins with a new zero.
+/// Of each channel, and of all of them: since the zero of the file, and since that of each run, for
+/// a run begins with a new zero.
 fn drifts(context: &mut Context) -> Vec<Entry> {
     let data = context.data;
     // a sensor that is read elsewhere has a zero of its own
-    let zero_of = |d: &Datum| (d.run, d.stations()[1]);
-    let mut first_of_run: HashMap<(usize, u64), usize> = HashMap::new();
+    let place = |d: &Datum| (d.run, d.stations()[1]);
+    let mut runs: HashMap<(usize, u64), Vec<usize>> = HashMap::new();
     for (i, datum) in data.iter().enumerate() {
-        first_of_run.entry(zero_of(datum)).or_insert(i);
+        runs.entry(place(datum)).or_default().push(i);
     }
-    let of_file = |_: &Datum| 0;
-    let of_run = |d: &Datum| first_of_run[&zero_of(d)];
     let has_runs = data.iter().any(|d| d.run != data[0].run);
     let channels = measured_channels(data);
     let mut entries = Vec::new();
     for course in courses(context) {
-        let zeros: [&dyn Fn(&Datum) -> usize; 2] = [&of_file, &of_run];
-        for (form, zero) in course.forms.into_iter().zip(zeros).take(1 + usize::from(has_runs)) {
+        let zeros: HashMap<(usize, u64), f64> =
+            runs.iter().map(|(key, run)| (*key, at_zero(data, run, &course.values))).collect();
+        let of_file = |_: &Datum| zeros[&place(&data[0])];
+        let of_run = |d: &Datum| zeros[&place(d)];
+        let ways: [&dyn Fn(&Datum) -> f64; 2] = [&of_file, &of_run];
+        for (form, zero) in course.forms.into_iter().zip(ways).take(1 + usize::from(has_runs)) {
             entries.extend(drifts_since(data, &channels, &course, form, zero));
         }
     }
     entries
 }
 
-/// Drifts of one course since some zero.
+/// What the `values` were when a run was zeroed: a usual step of time before its first load was
+/// read, or when that was hung, along the line of the run; at its first reading where that is of no
+/// load.
+fn at_zero(data: &[Datum], run: &[usize], values: &[f64]) -> f64 {
+    let [first, last] = [run[0], run[run.len() - 1]];
+    if data[first].load == 0.0 {
+        return values[first];
+    }
+    let before = || {
+        let times: Vec<f64> = data.iter().map(|d| d.time).collect::<Option<_>>()?;
+        let hung = data[first].loaded_at.map(|hung| times[first] - hung);
+        Some((hung.unwrap_or_else(|| dwell(data, &times)), times[last] - times[first]))
+    };
+    // without a clock every instant is a step
+    let (before, lasted) = before().unwrap_or((1.0, (data[last].order - data[first].order) as f64));
+    let rate = if lasted > 0.0 { (values[last] - values[first]) / lasted } else { 0.0 };
+    values[first] - rate * before
+}
+
+/// Drifts of one course since some zero, where it had that value.
 fn drifts_since(
     data: &[Datum],
     channels: &[Axis],
     course: &Course,
     form: Option<&'static str>,
-    zero: &dyn Fn(&Datum) -> usize,
+    zero: &dyn Fn(&Datum) -> f64,
 ) -> Vec<Entry> {
     let Course { values, per, size, .. } = course;
     let shift = |channel: Axis| {
         let own = data.iter().enumerate().filter(|(_, d)| d.channel == channel);
-        Action::Drift(channel, *per, own.map(|(i, d)| (i, values[i] - values[zero(d)])).collect())
+        Action::Drift(channel, *per, own.map(|(i, d)| (i, values[i] - zero(d))).collect())
     };
     let of_channel = |&channel: &Axis| {
         let drift = parameter(per.suffix(), 0.0, *size, UNBOUNDED);
@@ -329,10 +365,9 @@ fn drifts_since(
         };
         entries.push((candidate(&THERMAL_DRIFT.effect, location, parameters), actions));
     }
-    if course.is_settling {
-        let rarer =
-            |(candidate, actions)| alternative((Candidate { weight: RARELY_SETTLES, ..candidate }, actions));
-        return entries.into_iter().map(rarer).collect();
-    }
-    entries
+    let own = |(candidate, actions)| {
+        let entry = (Candidate { weight: course.weight, ..candidate }, actions);
+        if course.is_settling { alternative(entry) } else { entry }
+    };
+    entries.into_iter().map(own).collect()
 }

@@ -185,10 +185,11 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Adds what is left of the loads of other runs, Σ v·D, m.
+    /// Adds what is left of the loads of other runs, Σ v·D/(1 + v·w̄), m.
     pub fn add_recovery(&self, readings: &mut [f64]) {
         for (memory, _, value) in &self.memories {
-            readings.iter_mut().zip(&memory.recovery).for_each(|(reading, left)| *reading += value * left);
+            let share = memory.recovered(*value);
+            readings.iter_mut().zip(&memory.recovery).for_each(|(reading, left)| *reading += share * left);
         }
     }
 

@@ -174,8 +174,14 @@ impl RigModel {
             of_own.push((effect.effect, own_effect::candidate::entry(effect, self)?));
         }
         let stiffness = first_sight::stiffness(&self.data);
-        let mut context =
-            Context { data: &self.data, body: &mut self.body, rod: self.rod.as_ref(), stiffness };
+        let at_first_sight = first_sight::ratio(&self.data);
+        let mut context = Context {
+            data: &self.data,
+            body: &mut self.body,
+            rod: self.rod.as_ref(),
+            stiffness,
+            at_first_sight,
+        };
         let has_rod = context.rod.is_some();
         let mut entries = Vec::new();
         for effect in registry::terms().filter(|effect| has_rod || !effect.needs_rod) {

@@ -93,8 +93,9 @@ impl<'a> Derivative<'a> {
                 let mut column = self.model.difference_by_case(structure, &more, &less) * scale;
                 // cases do not hold what is left of the loads of other runs
                 if let Action::Memory(memory, _) = action {
+                    let share = parameter.size * memory.recovered_derivative(value);
                     let left = column.iter_mut().zip(&memory.recovery);
-                    left.for_each(|(value, left)| *value += parameter.size * left);
+                    left.for_each(|(own, left)| *own += share * left);
                 }
                 column
             }

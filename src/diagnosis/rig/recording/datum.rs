@@ -12,6 +12,7 @@ use super::rezeroed::{Shown, is_zeroed_by_direction};
 use crate::diagnosis::rig::numbering::numbered;
 use crate::inference::RunName;
 use crate::rig::readings::{Axis, Direction, Driven, Phase, Reading, Readings};
+use crate::statistics::unrounded;
 
 /// One measured offset.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,7 +57,7 @@ pub struct Datum {
     pub time: Option<f64>,
     /// When this load was hung, s, on the clock of `time`.
     pub loaded_at: Option<f64>,
-    /// Temperature, °C.
+    /// Temperature, °C; between the steps of its display.
     pub temperature: Option<f64>,
     /// Arc length from the flange to the load, m; `None`: the tip.
     pub load_station: Option<f64>,
@@ -177,10 +178,28 @@ fn impose(data: &mut [Datum]) {
     }
 }
 
+/// Of each row, °C: between the steps of its display where all rows have one.
+fn temperatures(rows: &[Reading], chronicle: &Chronicle) -> Vec<Option<f64>> {
+    let shown: Vec<Option<f64>> = rows.iter().map(|row| row.temperature).collect();
+    let Some(values) = shown.iter().copied().collect::<Option<Vec<f64>>>() else { return shown };
+    let places: Vec<f64> = chronicle.rows.iter().map(|own| own.place as f64).collect();
+    let times = rows.iter().map(|row| row.time).collect::<Option<Vec<f64>>>();
+    // a clock that starts anew in each run says nothing of the order of the runs
+    let is_one_clock = |times: &Vec<f64>| {
+        let mut rows: Vec<(f64, f64)> = places.iter().copied().zip(times.iter().copied()).collect();
+        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        rows.is_sorted_by(|a, b| a.1 <= b.1)
+    };
+    let at = times.filter(is_one_clock).unwrap_or(places);
+    unrounded(&values, &at).into_iter().map(Some).collect()
+}
+
 fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {
     let chronicle = Chronicle::of(rows, driven);
+    let temperature = temperatures(rows, &chronicle);
     let of_row = |(index, row): (usize, &Reading)| {
         let (row, own) = (row.clone(), chronicle.rows[index]);
+        let temperature = temperature[index];
         Axis::ALL.into_iter().filter_map(move |channel| {
             Some(Datum {
                 row: index + 1,
@@ -200,7 +219,7 @@ fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {
                 order: own.place,
                 time: row.time,
                 loaded_at: row.loaded_at,
-                temperature: row.temperature,
+                temperature,
                 load_station: row.load_station,
                 read_station: row.read_station,
                 measured: row.offset[channel.index()]?,

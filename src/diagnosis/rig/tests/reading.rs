@@ -54,8 +54,8 @@ fn what_slips_for_good_is_two_runs_at_least_on_either_side() {
     assert_eq!(slips(4), ["y, trial 2, after row 4, dy, for good"]);
 }
 
-/// However slowly: what is said is how far the readings have drifted by the end, since the first of
-/// the file or, run by run, since their own.
+/// However slowly: what is said is how far the readings have drifted from the first of the file to
+/// the last; since the zero, which was a step before, or run by run since their own.
 #[test]
 fn a_drift_that_settles_has_come_as_far_as_is_said() {
     let text = "axis,load_n,trial,time_s,dy_um\ny,5,1,0,230\ny,10,1,300,460\ny,5,2,600,230\ny,10,2,900,460\n";
@@ -67,7 +67,7 @@ fn a_drift_that_settles_has_come_as_far_as_is_said() {
             |time: f64| (1.0 - f64::exp(-3.0 * time / (share * 900.0))) / (1.0 - f64::exp(-3.0 / share));
         let [second, third] = [300.0, 600.0].map(|time| 40.0 * UM * warm(time));
         let of_file = one(&model, "thermal_drift", &format!("dy, {pace}"), 40.0 * UM, Axis::Y);
-        assert_all(&of_file, &[0.0, second, third, 40.0 * UM]);
+        assert_all(&of_file, &[0.0, second, third, 40.0 * UM].map(|own| own + second));
         let of_runs = one(
             &model,
             "thermal_drift",
@@ -75,7 +75,8 @@ fn a_drift_that_settles_has_come_as_far_as_is_said() {
             40.0 * UM,
             Axis::Y,
         );
-        assert_all(&of_runs, &[0.0, second, 0.0, 40.0 * UM - third]);
+        let last = 40.0 * UM - third;
+        assert_all(&of_runs, &[second, 2.0 * second, last, 2.0 * last]);
     }
 }
 
@@ -162,4 +163,44 @@ fn play_of_the_displays_is_no_friction_and_friction_is_no_play() {
         u + rubbing(u, before) * c[(k, k)] / UM
     };
     assert_eq!(named(&shown(&c, friction)).0, "friction");
+}
+
+/// A run is zeroed before its first load is hung: where that was not written down, a usual step of
+/// time before it was read; at its first reading, where that is of no load.
+#[test]
+fn a_drift_begins_where_its_run_was_zeroed() {
+    let drift = |text: &str| {
+        let model = model(text, &rod(""));
+        one(&model, "thermal_drift", "dy, since the zero of each run", UM / 3600.0, Axis::Y)
+    };
+    let hour = |seconds: [f64; 4]| seconds.map(|own| own * UM / 3600.0);
+    let rows = "y,5,1,100,230\ny,10,1,160,460\ny,5,2,600,230\ny,10,2,660,460\n";
+    let expected = hour([60.0, 120.0, 60.0, 120.0]);
+    assert_all(&drift(&format!("axis,load_n,trial,time_s,dy_um\n{rows}")), &expected);
+    let zero_read = rows.replace("y,5,", "y,0,");
+    let expected = hour([0.0, 60.0, 0.0, 60.0]);
+    assert_all(&drift(&format!("axis,load_n,trial,time_s,dy_um\n{zero_read}")), &expected);
+    let rows = "y,5,1,100,80,230\ny,10,1,160,150,460\ny,5,2,600,590,230\ny,10,2,660,650,460\n";
+    let expected = hour([20.0, 80.0, 10.0, 70.0]);
+    assert_all(&drift(&format!("axis,load_n,trial,time_s,loaded_at_s,dy_um\n{rows}")), &expected);
+}
+
+/// A thermometer that shows tenths has a room that warms up evenly between its steps, whatever clock
+/// the runs have.
+#[test]
+fn temperatures_are_those_between_the_steps_of_the_display() {
+    let warmed = |k: usize| 20.02 + 0.013 * k as f64;
+    for (header, restarts) in [("time_s,", false), ("time_s,", true), ("", false)] {
+        let mut text = format!("axis,load_n,trial,{header}temperature_c,dy_um\n");
+        for k in 0..48 {
+            let time = if restarts { k % 4 } else { k } * 60;
+            let time = if header.is_empty() { String::new() } else { format!("{time},") };
+            text += &format!("y,{},{},{time}{:.1},0\n", 3 * (1 + k % 4), 1 + k / 4, warmed(k));
+        }
+        let model = model(&text, &rod(""));
+        for (k, datum) in model.data().iter().enumerate() {
+            let off = datum.temperature.unwrap() - warmed(k);
+            assert!(off.abs() < 0.02, "{header} {restarts} {k}: {off}");
+        }
+    }
 }

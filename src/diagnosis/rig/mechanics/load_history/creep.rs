@@ -55,7 +55,7 @@ impl Changed {
 }
 
 impl Clock {
-    pub const ALL: [Clock; 13] = [
+    pub const ALL: [Clock; 14] = [
         Clock::FirstReading,
         Clock::FirstLoad,
         Clock::EachLoad(Changed::Early),
@@ -66,6 +66,7 @@ impl Clock {
         Clock::EachLoad(Changed::Waited(3)),
         Clock::AllLoads(Changed::Early),
         Clock::AllLoads(Changed::Late),
+        Clock::AllLoads(Changed::Waited(2)),
         Clock::ThisLoad,
         Clock::File,
         Clock::UnknownOnset,
@@ -94,7 +95,7 @@ impl Clock {
                 "since each load, hung three quarters of the shortest wait before it was read"
             }
             Clock::AllLoads(Changed::Waited(_)) => {
-                "since each load, of earlier runs too, hung some time before it was read"
+                "since each load, of earlier runs too, hung half of the shortest wait before it was read"
             }
             Clock::AllLoads(Changed::Early) => "since each load, of earlier runs too",
             Clock::AllLoads(Changed::Midway) => {

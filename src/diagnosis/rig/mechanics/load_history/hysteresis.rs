@@ -30,6 +30,9 @@ pub enum Loop {
     /// The same by plays that are spread evenly up to half of the largest load (Visintin, ch. III):
     /// beyond half of it the first way up is straight, F·(1 + 2h) − h·F_max.
     NewByPlays,
+    /// A rod that is loaded for the first time by such plays in every run: other directions between
+    /// the runs undo what they remember. ⅔ of [`Loop::NewByPlays`], h wide at half load.
+    FirstByPlays,
     /// A load that goes up and down across zero: half of h of its whole range above the straight
     /// line between its turns while falling, below it while rising, by parabolas (Lord Rayleigh's
     /// branches, Masing's rule).
@@ -37,13 +40,14 @@ pub enum Loop {
 }
 
 impl Loop {
-    pub const ALL: [Loop; 7] = [
+    pub const ALL: [Loop; 8] = [
         Loop::Closed,
         Loop::Symmetric,
         Loop::Remanent,
         Loop::Virgin,
         Loop::NewByRayleigh,
         Loop::NewByPlays,
+        Loop::FirstByPlays,
         Loop::Turning,
     ];
 
@@ -57,6 +61,7 @@ impl Loop {
             Loop::Turning => "at each turn",
             Loop::NewByRayleigh => "new before these readings",
             Loop::NewByPlays => "new before these readings, by plays",
+            Loop::FirstByPlays => "loaded for the first time, by plays",
         }
     }
 }
@@ -78,6 +83,10 @@ pub fn hysteresis(data: &[Datum], shape: Loop) -> Option<Memory> {
         let is_new = largest > *before;
         *before = before.max(largest);
         let shape = if remembers && !is_new { Loop::Symmetric } else { shape };
+        let (shape, share) = match shape {
+            Loop::FirstByPlays => (Loop::NewByPlays, 2.0 / 3.0),
+            other => (other, 1.0),
+        };
         for i in run.into_iter().filter(|_| largest > 0.0) {
             let (load, is_unloading) = (size(&data[i]), data[i].is_unloading());
             let parabola = 4.0 * (1.0 - load / largest);
@@ -101,8 +110,10 @@ pub fn hysteresis(data: &[Datum], shape: Loop) -> Option<Memory> {
                     memory.lingering[i] = 0.5 * parabola * load + 2.0 * largest;
                 }
                 (Loop::NewByPlays, true) => memory.lingering[i] = 0.5 * parabola * load + largest,
-                (Loop::Closed | Loop::Remanent, false) | (Loop::Turning, _) => {}
+                (Loop::Closed | Loop::Remanent, false) | (Loop::Turning | Loop::FirstByPlays, _) => {}
             }
+            memory.relative[i] *= share;
+            memory.lingering[i] *= share;
         }
     }
     Some(memory)

@@ -9,8 +9,23 @@ pub struct Memory {
     pub relative: Vec<f64>,
     /// W, N: the load v·W is felt besides the one that acts.
     pub lingering: Vec<f64>,
-    /// D, m: readings show v·D besides, of loads of other runs; nothing where none counts.
+    /// D, m: readings show v·D/(1 + v·w̄) besides, of loads of other runs; nothing where none counts.
+    /// D is of a rod as soft as it was read, which is 1 + v·w̄ times as soft as at once.
     pub recovery: Vec<f64>,
+    /// w̄: w of the usual reading.
+    pub usual: f64,
+}
+
+impl Memory {
+    /// v/(1 + v·w̄), by which the recovery is multiplied.
+    pub fn recovered(&self, value: f64) -> f64 {
+        value / (1.0 + value * self.usual)
+    }
+
+    /// Its derivative.
+    pub fn recovered_derivative(&self, value: f64) -> f64 {
+        (1.0 + value * self.usual).powi(-2)
+    }
 }
 
 /// An instant of a run: its load along the positive axis (N), its time and when that load was hung
@@ -39,7 +54,8 @@ pub fn moments(data: &[Datum], run: &[usize], times: &[f64]) -> Vec<Moment> {
 
 /// Nothing is remembered.
 pub(super) fn none(data: &[Datum]) -> Memory {
-    Memory { relative: vec![0.0; data.len()], lingering: vec![0.0; data.len()], recovery: Vec::new() }
+    let zeros = || vec![0.0; data.len()];
+    Memory { relative: zeros(), lingering: zeros(), recovery: Vec::new(), usual: 0.0 }
 }
 
 /// Indices of the data of each run, in the order of recording.

@@ -82,6 +82,12 @@ fn a_new_rod_is_new_once_in_each_direction() {
             (&before.relative[6..], &before.lingering[6..])
         );
     }
+    // where it is new in every run, all are alike, and h wide at half of the load
+    let first = hysteresis(&mixed, Loop::FirstByPlays).unwrap();
+    for run in [0, 3, 6] {
+        let felt = |k: usize| mixed[run + k].load * first.relative[run + k] + first.lingering[run + k];
+        assert!((felt(2) - felt(0) - 10.0).abs() < 1e-12 && (felt(1) - 20.0 / 3.0).abs() < 1e-12, "{run}");
+    }
 }
 
 #[test]

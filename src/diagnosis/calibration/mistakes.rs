@@ -36,6 +36,7 @@ use self::held::{held, mostly_held, without_held};
 use self::motion::measure_moves;
 use self::moves::Other;
 use self::quick::LoadedRobot;
+use self::search::drifts::clocks;
 use self::search::{AdoptedStep, FittedDraft, MistakeSearch, SearchStep};
 use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
 use super::write_back::apply::{Applied, apply};
@@ -303,10 +304,11 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Option
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
     let moves = moves::all(campaign, &draft, &meant, &forces, &robots, exchanged);
     let of_rows = moves::of_rows::of_rows(campaign, &draft);
+    let clocks = clocks(&campaign.measurements);
     let tip_mass = campaign.rod.as_ref().map_or(0.0, |rod| rod.tip_mass);
     let whole = draft.clone();
     let draft = if is_sure { draft } else { without_held(draft, &held) };
-    let mut search = MistakeSearch { draft, bodies, moves, of_rows, tip_mass, guess_weight: 1.0 };
+    let mut search = MistakeSearch { draft, bodies, moves, of_rows, clocks, tip_mass, guess_weight: 1.0 };
     let mut result = if is_sure { None } else { search.found() };
     let is_rough = |(_, best, _): &(FittedDraft, FittedDraft, Vec<AdoptedStep>)| {
         best.steps.is_empty() && !search.has_failed(best) && search.is_rough_guess(best)

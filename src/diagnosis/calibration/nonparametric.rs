@@ -4,7 +4,6 @@
 //! ```text
 //! along one number      Σ_k a_k·cos(π k x)        a_k a vector in {W} or in {T}, x from 0 to 1,
 //!                       a_k ~ s/(1 + k)
-//! again and again       a·sin(2π n t) + b·cos(2π n t), n cycles over the recording, scanned
 //! over the workspace    products of such cosines along x, y, z of {W}
 //! by its orientation    first and second order in the direction that an axis of {W} has in {T}, a
 //!                       vector in {T}; the same in the direction in {T} of a line that is fixed in
@@ -20,6 +19,7 @@
 //! of a clamp's sensors  `device.rs`
 //! of a loose tool, of a bearing that runs out   `loose.rs`
 //! of the last moves     `moves.rs`
+//! of much finer detail  `waves.rs`
 //! ```
 //!
 //! for every shape is more likely to be smooth than not.
@@ -28,8 +28,7 @@ mod curve;
 mod device;
 mod loose;
 mod moves;
-
-use std::f64::consts::TAU;
+mod waves;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -46,8 +45,6 @@ const LEAST_TORQUE: f64 = 0.1;
 /// Highest order of a product of cosines over the workspace, along each of two joints, and in a
 /// link.
 const ORDER: (usize, usize, usize) = (3, 3, 1);
-/// Most frequencies at which something may come back over a recording.
-const RETURNS: usize = 200;
 /// What is said of what depends on the orientation.
 const BY_ORIENTATION: &str = "follows how the tool is held";
 
@@ -75,7 +72,7 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
             entries.extend(along(context, angle_of(j), &label, &angle, &values, frame));
         }
     }
-    entries.extend(again_and_again(context));
+    entries.extend(waves::all(context));
     entries.extend(workspace(context));
     entries.extend((0..3).map(|axis| by_orientation(context, axis)));
     entries.extend(SIDES.iter().map(|side| from_a_side(context, side)));
@@ -157,24 +154,6 @@ fn workspace(context: &Context) -> Option<Entry> {
     });
     let follows = "follows the place in the workspace";
     Some(curve("over the workspace", follows, None, parameters.collect()))
-}
-
-/// What comes back after so many rows: from twice over the recording to every third row, or as far
-/// as the scan goes.
-fn again_and_again(context: &Context) -> Vec<Entry> {
-    let rows = context.configurations.len();
-    // steps of half a cycle tell all frequencies apart
-    let counts = (4..=2 * rows / 3).take(RETURNS).map(|halves| 0.5 * halves as f64);
-    let of_count = |count: f64| {
-        let phase = |row: usize| TAU * count * row as f64 / rows as f64;
-        let mut parameters = vectors(context, "sin", SIZE, Frame::World, &|row| phase(row).sin());
-        parameters.extend(vectors(context, "cos", SIZE, Frame::World, &|row| phase(row).cos()));
-        let every = rows as f64 / count;
-        let again = format!("again every {every:.1} poses");
-        let (label, follows) = (format!("order, {again}"), format!("comes back {again}"));
-        curve(label, follows, Some(Variable::Order), parameters)
-    };
-    counts.map(of_count).collect()
 }
 
 /// Products of first and second order of a direction's three numbers, with their sizes; of the

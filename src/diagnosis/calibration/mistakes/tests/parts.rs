@@ -263,3 +263,17 @@ fn one_of_three_clamps_beside_its_place_is_no_mistake() {
         assert_eq!(found(&wrong), [], "clamp {clamp} by {by:?}");
     }
 }
+
+/// A milliradian over a day that warms and cools: of some rows it looks like another zero.
+#[test]
+fn a_zero_that_drifts_with_the_temperature_is_no_mistake_of_some_rows() {
+    let mut wrong = tracked(60, 7);
+    let kelvin = |row: f64| 2.5 * (1.0 - (-row / 9.0).exp()) + 0.5 * (row / 7.0).sin();
+    for (row, own) in wrong.measurements.rows.iter_mut().enumerate() {
+        own.temperature = Some(20.0 + kelvin(row as f64));
+    }
+    for (row, q) in wrong.measurements.joint_values.chunks_mut(6).enumerate() {
+        q[3] -= 2e-3 * (kelvin(row as f64) - 2.3);
+    }
+    assert_eq!(found(&wrong), []);
+}

@@ -208,9 +208,9 @@ fn a_rod_that_is_turned_in_its_mount_is_not_of_another_angle_alone() {
         let rivals = |own: &Finding| own.rivals.iter().map(|rival| rival.effect.name).collect::<Vec<_>>();
         let named: Vec<_> = findings.iter().map(|own| (own.effect.name, rivals(own))).collect();
         const TURNED: [&str; 2] = ["load_misalignment", "sensor_misalignment"];
-        let is_said = named.iter().all(|(name, rivals)| {
-            TURNED.contains(name) || TURNED.iter().all(|own| rivals.contains(own))
-        });
+        let is_said = named
+            .iter()
+            .all(|(name, rivals)| TURNED.contains(name) || TURNED.iter().all(|own| rivals.contains(own)));
         assert!(!named.is_empty() && is_said, "{degrees}: {named:?}");
     }
 }

@@ -33,6 +33,9 @@ const LENGTHS: [f64; 5] = [0.7, 1.4, 2.8, 5.5, 11.0];
 /// A length is at most this share of its course. What goes on for longer, or over more than some
 /// ten poses, is no scatter.
 const LONGEST: f64 = 0.15;
+/// Lengths of what is no scatter, but walks along its course: where one of them, or one of those
+/// above that is too long, is likelier by [`WORTH`], errors have nothing in common.
+const TOO_LONG: [f64; 3] = [22.0, 44.0, 88.0];
 /// Ln of the odds from which on errors hang together.
 const WORTH: f64 = 3.0;
 /// Times that an answer is asked again with the errors that it leaves.
@@ -128,14 +131,16 @@ fn log_probability_of_none(evidence: &Evidence, noise: CorrelatedNoise) -> f64 {
     moments.score().log_evidence + whitening.log_jacobian()
 }
 
-/// The likeliest errors in common of what is left; `None` where independent ones are as likely.
+/// The likeliest errors in common of what is left; `None` where independent ones are as likely, and
+/// where they go on for too long.
 fn likeliest(evidence: &Evidence, left: &DVector<f64>) -> Option<CorrelatedNoise> {
     let places = || evidence.courses.iter().flatten().map(|(_, place)| *place);
     if places().count() < FEWEST {
         return None;
     }
     let extent = places().fold(f64::NEG_INFINITY, f64::max) - places().fold(f64::INFINITY, f64::min);
-    let lengths = LENGTHS.into_iter().filter(|length| *length <= LONGEST * extent);
+    let is_scatter = |length: f64| length <= LONGEST * extent && !TOO_LONG.contains(&length);
+    let lengths = LENGTHS.into_iter().chain(TOO_LONG).filter(|length| *length <= extent);
     let all: Vec<CorrelatedNoise> =
         lengths.flat_map(|length| SHARES.map(|share| CorrelatedNoise { share, length })).collect();
     let likelihood = |correlated_noise: Option<CorrelatedNoise>| {
@@ -144,8 +149,10 @@ fn likeliest(evidence: &Evidence, left: &DVector<f64>) -> Option<CorrelatedNoise
         whitening.log_jacobian() - 0.5 * whitening.degrees_of_freedom as f64 * square.ln()
     };
     let tried = in_parallel(all.len(), |k| (likelihood(Some(all[k])), all[k]));
-    let best = tried.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (best.0 > likelihood(None) + WORTH).then_some(best.1)
+    let (scatter, walks): (Vec<_>, Vec<_>) = tried.into_iter().partition(|tried| is_scatter(tried.1.length));
+    let best = scatter.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let is_walk = walks.iter().any(|walk| walk.0 > best.0 + WORTH);
+    (!is_walk && best.0 > likelihood(None) + WORTH).then_some(best.1)
 }
 
 #[cfg(test)]

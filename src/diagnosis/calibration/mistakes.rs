@@ -23,6 +23,7 @@ mod held;
 mod motion;
 mod moves;
 mod names;
+mod other_rods;
 mod quick;
 mod search;
 mod slips;
@@ -35,6 +36,7 @@ use self::draft::Draft;
 use self::held::{held, mostly_held, without_held};
 use self::motion::measure_moves;
 use self::moves::Other;
+use self::other_rods::add_rivals;
 use self::quick::LoadedRobot;
 use self::search::drifts::clocks;
 use self::search::{AdoptedStep, FittedDraft, MistakeSearch, SearchStep};
@@ -83,6 +85,8 @@ pub struct Mended {
     pub has_data: bool,
     /// True where the rod is not the one of its file.
     is_rod_rewritten: bool,
+    /// Rods that may have been meant, by their files.
+    rods: Vec<(String, Rod)>,
     /// How it is calibrated.
     options: Options,
     /// Errors of a calibration on what was recorded; `None` where nothing was found.
@@ -163,6 +167,7 @@ impl Mended {
             is_changed: false,
             has_data: true,
             is_rod_rewritten: false,
+            rods: Vec::new(),
             options: *options,
             recorded: None,
         }
@@ -176,7 +181,10 @@ impl Mended {
         let left = Summary::of(&meant.residuals());
         let is_better = left.rms < CONFIRMED * recorded.rms && left.mean < recorded.mean;
         let is_confirmed = meant.is_plausible() || is_better;
-        if is_confirmed { self } else { Mended::unchanged(campaign, mode, &self.options) }
+        match is_confirmed {
+            true => self,
+            false => Mended { rods: self.rods, ..Mended::unchanged(campaign, mode, &self.options) },
+        }
     }
 
     /// Calibrates the campaign that was meant and diagnoses what is left, as
@@ -187,6 +195,7 @@ impl Mended {
     pub fn diagnose(&self) -> Result<CalibrationDiagnosis<'_>> {
         let calibration = calibrate(&self.campaign, self.mode, &self.options)?;
         let mut found = diagnose_calibrated(&self.campaign, calibration)?;
+        add_rivals(&self.campaign, &self.rods, &self.options, &mut found);
         let has_failed = found.is_implausible();
         let diagnosis = &mut found.diagnosis;
         if has_failed || !self.has_data {
@@ -257,7 +266,7 @@ impl Mended {
 }
 
 fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Options) -> Result<Mended> {
-    let mut mended = Mended::unchanged(campaign, mode, options);
+    let mut mended = Mended { rods: others.rods.clone(), ..Mended::unchanged(campaign, mode, options) };
     let draft = Draft::of(campaign);
     let readings = moves::robots::readings(campaign);
     let compensation = Compensation::new(campaign, mode)?;

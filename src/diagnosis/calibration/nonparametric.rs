@@ -12,7 +12,7 @@
 //! of a joint's reversal it turns by Σ a_k·cos(π k x) one way, by as much the other way when it
 //!                       came from there, or is loaded the other way
 //! of two joints         both turn by Σ a_kl·cos(π k x)·cos(π l y): what neither does as a function
-//!                       of its own angle
+//!                       of its own angle; or any other joint does
 //! of a link             all beyond a joint turns about any axis of its link by products of two
 //!                       joints' angles
 //! of each clamp         a vector in {W}, or in {T}
@@ -295,7 +295,7 @@ fn links(context: &Context) -> Vec<Entry> {
     entries
 }
 
-/// Both joints of a pair, turned by what depends on both angles.
+/// Both joints of a pair, or any other one, turned by what depends on both angles.
 fn pairs(context: &Context) -> Vec<Entry> {
     let joints = context.revolute();
     let x: Vec<Option<Vec<f64>>> = (0..context.joint_count()).map(|j| angles(context, j)).collect();
@@ -303,17 +303,22 @@ fn pairs(context: &Context) -> Vec<Entry> {
     for (at, &i) in joints.iter().enumerate() {
         for &j in &joints[at + 1..] {
             let (Some(x), Some(y)) = (&x[i], &x[j]) else { continue };
-            let parameters = [i, j].into_iter().flat_map(|turned| {
+            let turned = |turned: usize| {
                 let orders = (0..=ORDER.1).flat_map(|k| (0..=ORDER.1).map(move |l| (k, l))).skip(1);
                 orders.map(move |(k, l)| {
                     let column = context.turn(turned, |row, _| cosine(k, x[row]) * cosine(l, y[row]));
                     let name = format!("joint_{}_cosines_{k}{l}_urad", turned + 1);
                     (linear(name, TURN / (1 + k + l) as f64), column)
                 })
-            });
-            let joints = format!("joint {} and joint {}", i + 1, j + 1);
-            let follows = format!("depends on {joints} together");
-            entries.push(curve(format!("{joints}, a surface"), follows, None, parameters.collect()));
+            };
+            let names = format!("joint {} and joint {}", i + 1, j + 1);
+            let (label, follows) = (format!("{names}, a surface"), format!("depends on {names} together"));
+            entries.push(curve(label, follows, None, turned(i).chain(turned(j)).collect()));
+            for &other in joints.iter().filter(|&&other| other != i && other != j) {
+                let label = format!("joint {}, turned by {names}", other + 1);
+                let follows = format!("turns joint {} with {names}", other + 1);
+                entries.push(curve(label, follows, None, turned(other).collect()));
+            }
         }
     }
     entries

@@ -29,7 +29,7 @@ const RESCALED: f64 = 0.06;
 /// So many passes choose the drawing's scale.
 const RESCALING_PASSES: usize = 6;
 /// So many passes weigh the rows.
-const WEIGHING_PASSES: usize = 30;
+const WEIGHING_PASSES: usize = 40;
 /// Most passes of the compensation loop.
 const MOST_PASSES: usize = 60;
 

@@ -9,7 +9,7 @@ pub mod memory;
 pub mod prepared;
 pub mod sides;
 pub mod tails;
-mod unit_of_force;
+pub mod unit_of_force;
 
 use self::arrival::unknown_arrival;
 use self::beside::{calibrated_beside, unequal};

@@ -103,8 +103,8 @@ impl Along<'_> {
             curve(format!("{label}, {waves}"), format!("{follows}, in {waves}"), None, self.wave(cycles))
         };
         let fine = |length: f64| {
-            let label = format!("{label}, a curve of length {length}");
-            curve(label, follows, None, self.fine(length))
+            // of whatever length: a place is no form
+            curve(format!("{label}, a curve"), follows, None, self.fine(length))
         };
         self.cycles(3, WAVES).map(wave).chain(LENGTHS.map(fine)).collect()
     }

@@ -182,7 +182,7 @@ fn cross_talk_of_one_clamp_is_named_with_its_axes() {
             false => Vector3::zeros(),
         }
     };
-    let (findings, left) = diagnosed(&recorded(&campaign, &by, NOISE, 4));
+    let (findings, left) = diagnosed(&recorded(&campaign, &by, 0.5 * NOISE, 4));
     assert_eq!((findings.len(), &left), (1, &None), "{left:?}");
     assert_eq!(findings[0].effect.name, "sensor_scale");
     assert_eq!(findings[0].location.to_string(), "clamp 4, y into x");

@@ -260,7 +260,8 @@ mod tests {
             let evidence = Evidence { residual: residual.clone().into(), ..evidence(0, 0.0, true) };
             walks(&evidence, &DVector::from_vec(residual))
         });
+        // of a single coordinate half of them
         let count = walks.count();
-        assert!(count >= 12, "{count}");
+        assert!(count >= 9, "{count}");
     }
 }

@@ -1,6 +1,8 @@
 //! The compensation loop (Eqs 11–14): fit, recompute deflections, torques and how much it
 //! scatters, fit again.
 
+use std::cmp::Ordering;
+
 use super::campaign::{Campaign, Recording, Targets};
 use super::compensation::Compensation;
 use super::drives;
@@ -26,6 +28,8 @@ const SETTLED_RELATIVE: f64 = 1e-3;
 const RESCALED: f64 = 0.06;
 /// So many passes choose the drawing's scale.
 const RESCALING_PASSES: usize = 6;
+/// So many passes weigh the rows.
+const WEIGHING_PASSES: usize = 40;
 /// Most passes of the compensation loop.
 const MOST_PASSES: usize = 60;
 
@@ -144,7 +148,12 @@ impl<'a, 'c> Run<'a, 'c> {
             let squares: f64 = deviations.iter().map(|d| d.norm_squared()).sum();
             let rms = (squares / self.recording.len() as f64).sqrt();
             self.passes.push(PassRecord { change, rms, noise: noise.pooled });
-            let weight = noise.row_weights(self.recording);
+            // then the weights stay, half way between those of two passes that made each other
+            let weight = match self.passes.len().cmp(&WEIGHING_PASSES) {
+                Ordering::Less => noise.row_weights(self.recording),
+                Ordering::Equal => middle(&noise.row_weights(self.recording), &self.pass.weight),
+                Ordering::Greater => self.pass.weight.clone(),
+            };
             // then the scale stays, lest it and the weights go on chasing each other
             let rescaled = match self.passes.len() < RESCALING_PASSES {
                 true => {
@@ -246,6 +255,10 @@ fn known_noise() -> least_squares::Options {
         to_the_last_digit: false,
         ..least_squares::Options::default()
     }
+}
+
+fn middle(one: &[f64], other: &[f64]) -> Vec<f64> {
+    one.iter().zip(other).map(|(one, other)| 0.5 * (one + other)).collect()
 }
 
 /// Largest size; zero for no values.

@@ -37,6 +37,9 @@ pub enum Limitation {
     CorrelatedPoses(f64, f64),
     /// The first pose, by its name, is so far off (m) as the way on which joints come moves others.
     UnknownArrival(String, f64),
+    /// A joint, from 0, with play, and poses, by their names, whose load is too small to say to
+    /// which side it pulls.
+    UnknownSide(usize, Vec<String>),
     /// The poses are too few to hold any out.
     NoFoldsOfPoses,
 }
@@ -116,6 +119,13 @@ impl fmt::Display for Limitation {
                 "{} is {} µm off. What was found may be the cause: where the arm came from before it was not recorded.",
                 pose.replacen("pose", "Pose", 1),
                 significant(off / UM, 3)
+            ),
+            Limitation::UnknownSide(joint, poses) => write!(
+                f,
+                "In {} the load of joint {} is too small to say to which side of its play it pulls: the poses \
+                 say that it is the other one than the masses of the robot file do.",
+                poses.join(", "),
+                joint + 1
             ),
             Limitation::NoFoldsOfPoses => f.write_str(
                 "The poses are too few to hold any out: no finding is confirmed by \

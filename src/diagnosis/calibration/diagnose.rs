@@ -7,8 +7,9 @@ pub mod hung;
 pub mod limits;
 pub mod memory;
 pub mod prepared;
+pub mod sides;
 pub mod tails;
-mod unit_of_force;
+pub mod unit_of_force;
 
 use self::arrival::unknown_arrival;
 use self::beside::{calibrated_beside, unequal};
@@ -16,6 +17,7 @@ use self::hung::{BesideMasses, beside_hidden_masses, may_bend, may_hide, with_ri
 use self::limits::{limits, noisy};
 use self::memory::check_memory;
 use self::prepared::{FirstLook, Prepared};
+use self::sides::{either, on_the_other_side, unknown_sides};
 use super::effects::contact::is_of_clamps;
 use super::effects::gear::gear_joint;
 use super::effects::{EVERY_ROW, registry};
@@ -100,11 +102,14 @@ pub fn diagnose_calibrated<'c>(
         let is_in_place = moved_after.iter().all(|row| look.moved_after.contains(row));
         // clamps get a second look: what is left says how well displacements are known
         let is_read = prepared.context.left_of_rows().is_some() || !is_of_clamps(&prepared.context);
-        if about.is_none() && is_equal && tails.is_none() && is_in_place && is_read {
+        let other_side = on_the_other_side(&prepared, &hypothesis, &left);
+        let is_same = about.is_none() && is_equal && tails.is_none() && other_side.is_empty();
+        if is_same && is_in_place && is_read {
             break;
         }
+        let turned = either(&look.turned, &other_side);
         let left = Some(prepared.model.by_row(&left));
-        look = FirstLook { scatter: noise, weights: look.weights.or(tails), left, moved_after };
+        look = FirstLook { scatter: noise, weights: look.weights.or(tails), left, moved_after, turned };
         let about = about.unwrap_or(prepared.about);
         let calibration = prepared.model.calibration;
         prepared = Prepared::about(campaign, calibration, about, &look)?;
@@ -135,6 +140,7 @@ pub fn diagnose_calibrated<'c>(
     let mut limits = limits(&context, &model.calibration, &evidence);
     limits.extend(look.scatter.iter().flat_map(|noise| noisy(campaign, noise)));
     limits.extend(arrival);
+    limits.extend(unknown_sides(&context, &diagnosis));
     let of_neighbours = evidence.correlated_noise;
     limits.extend(of_neighbours.map(|noise| Limitation::CorrelatedPoses(noise.share, noise.length)));
     let mut found = Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits, law };

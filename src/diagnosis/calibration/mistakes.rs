@@ -20,6 +20,7 @@ mod distance;
 mod draft;
 mod found;
 mod held;
+mod may_be_meant;
 mod motion;
 mod moves;
 mod names;
@@ -33,9 +34,11 @@ mod typed;
 use self::columns::Silent;
 use self::draft::Draft;
 use self::held::{held, mostly_held, without_held};
+use self::may_be_meant::add_rivals;
 use self::motion::measure_moves;
 use self::moves::Other;
 use self::quick::LoadedRobot;
+use self::search::drifts::clocks;
 use self::search::{AdoptedStep, FittedDraft, MistakeSearch, SearchStep};
 use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
 use super::write_back::apply::{Applied, apply};
@@ -82,6 +85,8 @@ pub struct Mended {
     pub has_data: bool,
     /// True where the rod is not the one of its file.
     is_rod_rewritten: bool,
+    /// Rods that may have been meant, by their files.
+    rods: Vec<(String, Rod)>,
     /// How it is calibrated.
     options: Options,
     /// Errors of a calibration on what was recorded; `None` where nothing was found.
@@ -162,6 +167,7 @@ impl Mended {
             is_changed: false,
             has_data: true,
             is_rod_rewritten: false,
+            rods: Vec::new(),
             options: *options,
             recorded: None,
         }
@@ -175,7 +181,10 @@ impl Mended {
         let left = Summary::of(&meant.residuals());
         let is_better = left.rms < CONFIRMED * recorded.rms && left.mean < recorded.mean;
         let is_confirmed = meant.is_plausible() || is_better;
-        if is_confirmed { self } else { Mended::unchanged(campaign, mode, &self.options) }
+        match is_confirmed {
+            true => self,
+            false => Mended { rods: self.rods, ..Mended::unchanged(campaign, mode, &self.options) },
+        }
     }
 
     /// Calibrates the campaign that was meant and diagnoses what is left, as
@@ -186,6 +195,7 @@ impl Mended {
     pub fn diagnose(&self) -> Result<CalibrationDiagnosis<'_>> {
         let calibration = calibrate(&self.campaign, self.mode, &self.options)?;
         let mut found = diagnose_calibrated(&self.campaign, calibration)?;
+        add_rivals(&self.campaign, &self.rods, &self.options, &mut found);
         let has_failed = found.is_implausible();
         let diagnosis = &mut found.diagnosis;
         if has_failed || !self.has_data {
@@ -256,7 +266,7 @@ impl Mended {
 }
 
 fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Options) -> Result<Mended> {
-    let mut mended = Mended::unchanged(campaign, mode, options);
+    let mut mended = Mended { rods: others.rods.clone(), ..Mended::unchanged(campaign, mode, options) };
     let draft = Draft::of(campaign);
     let readings = moves::robots::readings(campaign);
     let compensation = Compensation::new(campaign, mode)?;
@@ -303,10 +313,11 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Option
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
     let moves = moves::all(campaign, &draft, &meant, &forces, &robots, exchanged);
     let of_rows = moves::of_rows::of_rows(campaign, &draft);
+    let clocks = clocks(&campaign.measurements);
     let tip_mass = campaign.rod.as_ref().map_or(0.0, |rod| rod.tip_mass);
     let whole = draft.clone();
     let draft = if is_sure { draft } else { without_held(draft, &held) };
-    let mut search = MistakeSearch { draft, bodies, moves, of_rows, tip_mass, guess_weight: 1.0 };
+    let mut search = MistakeSearch { draft, bodies, moves, of_rows, clocks, tip_mass, guess_weight: 1.0 };
     let mut result = if is_sure { None } else { search.found() };
     let is_rough = |(_, best, _): &(FittedDraft, FittedDraft, Vec<AdoptedStep>)| {
         best.steps.is_empty() && !search.has_failed(best) && search.is_rough_guess(best)

@@ -4,7 +4,6 @@
 //! ```text
 //! along one number      Σ_k a_k·cos(π k x)        a_k a vector in {W} or in {T}, x from 0 to 1,
 //!                       a_k ~ s/(1 + k)
-//! again and again       a·sin(2π n t) + b·cos(2π n t), n cycles over the recording, scanned
 //! over the workspace    products of such cosines along x, y, z of {W}
 //! by its orientation    first and second order in the direction that an axis of {W} has in {T}, a
 //!                       vector in {T}; the same in the direction in {T} of a line that is fixed in
@@ -13,13 +12,14 @@
 //! of a joint's reversal it turns by Σ a_k·cos(π k x) one way, by as much the other way when it
 //!                       came from there, or is loaded the other way
 //! of two joints         both turn by Σ a_kl·cos(π k x)·cos(π l y): what neither does as a function
-//!                       of its own angle
+//!                       of its own angle; or any other joint does
 //! of a link             all beyond a joint turns about any axis of its link by products of two
 //!                       joints' angles
 //! of each clamp         a vector in {W}, or in {T}
 //! of a clamp's sensors  `device.rs`
 //! of a loose tool, of a bearing that runs out   `loose.rs`
 //! of the last moves     `moves.rs`
+//! of much finer detail  `waves.rs`
 //! ```
 //!
 //! for every shape is more likely to be smooth than not.
@@ -28,8 +28,7 @@ mod curve;
 mod device;
 mod loose;
 mod moves;
-
-use std::f64::consts::TAU;
+mod waves;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -46,8 +45,6 @@ const LEAST_TORQUE: f64 = 0.1;
 /// Highest order of a product of cosines over the workspace, along each of two joints, and in a
 /// link.
 const ORDER: (usize, usize, usize) = (3, 3, 1);
-/// Most frequencies at which something may come back over a recording.
-const RETURNS: usize = 200;
 /// What is said of what depends on the orientation.
 const BY_ORIENTATION: &str = "follows how the tool is held";
 
@@ -75,7 +72,7 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
             entries.extend(along(context, angle_of(j), &label, &angle, &values, frame));
         }
     }
-    entries.extend(again_and_again(context));
+    entries.extend(waves::all(context));
     entries.extend(workspace(context));
     entries.extend((0..3).map(|axis| by_orientation(context, axis)));
     entries.extend(SIDES.iter().map(|side| from_a_side(context, side)));
@@ -157,24 +154,6 @@ fn workspace(context: &Context) -> Option<Entry> {
     });
     let follows = "follows the place in the workspace";
     Some(curve("over the workspace", follows, None, parameters.collect()))
-}
-
-/// What comes back after so many rows: from twice over the recording to every third row, or as far
-/// as the scan goes.
-fn again_and_again(context: &Context) -> Vec<Entry> {
-    let rows = context.configurations.len();
-    // steps of half a cycle tell all frequencies apart
-    let counts = (4..=2 * rows / 3).take(RETURNS).map(|halves| 0.5 * halves as f64);
-    let of_count = |count: f64| {
-        let phase = |row: usize| TAU * count * row as f64 / rows as f64;
-        let mut parameters = vectors(context, "sin", SIZE, Frame::World, &|row| phase(row).sin());
-        parameters.extend(vectors(context, "cos", SIZE, Frame::World, &|row| phase(row).cos()));
-        let every = rows as f64 / count;
-        let again = format!("again every {every:.1} poses");
-        let (label, follows) = (format!("order, {again}"), format!("comes back {again}"));
-        curve(label, follows, Some(Variable::Order), parameters)
-    };
-    counts.map(of_count).collect()
 }
 
 /// Products of first and second order of a direction's three numbers, with their sizes; of the
@@ -316,7 +295,7 @@ fn links(context: &Context) -> Vec<Entry> {
     entries
 }
 
-/// Both joints of a pair, turned by what depends on both angles.
+/// Both joints of a pair, or any other one, turned by what depends on both angles.
 fn pairs(context: &Context) -> Vec<Entry> {
     let joints = context.revolute();
     let x: Vec<Option<Vec<f64>>> = (0..context.joint_count()).map(|j| angles(context, j)).collect();
@@ -324,17 +303,22 @@ fn pairs(context: &Context) -> Vec<Entry> {
     for (at, &i) in joints.iter().enumerate() {
         for &j in &joints[at + 1..] {
             let (Some(x), Some(y)) = (&x[i], &x[j]) else { continue };
-            let parameters = [i, j].into_iter().flat_map(|turned| {
+            let turned = |turned: usize| {
                 let orders = (0..=ORDER.1).flat_map(|k| (0..=ORDER.1).map(move |l| (k, l))).skip(1);
                 orders.map(move |(k, l)| {
                     let column = context.turn(turned, |row, _| cosine(k, x[row]) * cosine(l, y[row]));
                     let name = format!("joint_{}_cosines_{k}{l}_urad", turned + 1);
                     (linear(name, TURN / (1 + k + l) as f64), column)
                 })
-            });
-            let joints = format!("joint {} and joint {}", i + 1, j + 1);
-            let follows = format!("depends on {joints} together");
-            entries.push(curve(format!("{joints}, a surface"), follows, None, parameters.collect()));
+            };
+            let names = format!("joint {} and joint {}", i + 1, j + 1);
+            let (label, follows) = (format!("{names}, a surface"), format!("depends on {names} together"));
+            entries.push(curve(label, follows, None, turned(i).chain(turned(j)).collect()));
+            for &other in joints.iter().filter(|&&other| other != i && other != j) {
+                let label = format!("joint {}, turned by {names}", other + 1);
+                let follows = format!("turns joint {} with {names}", other + 1);
+                entries.push(curve(label, follows, None, turned(other).collect()));
+            }
         }
     }
     entries

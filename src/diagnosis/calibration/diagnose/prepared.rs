@@ -7,6 +7,7 @@ use super::super::evidence;
 use super::super::model::torque_uncertainty::TorqueUncertainty;
 use super::super::model::{CalibrationModel, Context, LinearTerms};
 use super::super::nonparametric;
+use super::sides::Side;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Noise};
 use crate::error::Result;
@@ -36,6 +37,8 @@ pub struct FirstLook {
     pub left: Option<Vec<Vector3<f64>>>,
     /// Rows, from 0, after which something has moved.
     pub moved_after: Vec<usize>,
+    /// Rows and joints, from 0, whose load pulls to the other side than the file says.
+    pub turned: Vec<Side>,
 }
 
 impl<'c> Prepared<'c> {
@@ -64,7 +67,7 @@ impl<'c> Prepared<'c> {
             Some(left) => context.left(left),
             None => context,
         };
-        let context = context.moved_after(&look.moved_after);
+        let context = context.moved_after(&look.moved_after).turned(&look.turned);
         let evidence = evidence::evidence_of(campaign, &about, &context);
         let (mut entries, not_testable) = registry::candidates(&context);
         entries.extend(nonparametric::all(&context));

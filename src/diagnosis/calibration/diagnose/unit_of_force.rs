@@ -17,7 +17,7 @@ use crate::inference::{Diagnosis, Estimate, Finding, FindingPart, Location, Riva
 use crate::units::{POUND_FORCE, STANDARD_GRAVITY};
 
 /// Units that a force may be in, N.
-const UNITS: [f64; 2] = [STANDARD_GRAVITY, POUND_FORCE];
+pub const UNITS: [f64; 2] = [STANDARD_GRAVITY, POUND_FORCE];
 
 /// Adds the rival, for a campaign whose contact force is `stated`, N in the frames of its devices.
 pub fn add_rivals(model: &CalibrationModel, stated: Option<Vector3<f64>>, diagnosis: &mut Diagnosis) {

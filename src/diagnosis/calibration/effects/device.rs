@@ -34,8 +34,8 @@ pub static SENSOR_SCALE: CalibrationEffect = CalibrationEffect {
         kind: Kind::Physics,
         summary: "a clamp's displacement sensors show too much, too little or cross-talk",
         formula: "R_c·(I − S⁻¹)·u: u the displacement in the device frame, R_c that frame in {W}; \
-                  S one factor along an axis, of one clamp or all, or 3×3 of all (rotation of the \
-                  device included)",
+                  S one factor along an axis, of one clamp or all, one cross-talk between two of one \
+                  clamp, or 3×3 of all (rotation of the device included)",
         prior: "3 %: a displacement sensor that was not calibrated in place, or whose axis is off by 1.7°",
         parameters: &[
             (&["factor"], "shown over true displacement along the axis"),
@@ -86,13 +86,22 @@ fn devices(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         })
     };
     let mut entries: Vec<Entry> = (0..3).flat_map(of_axis).collect();
-    // one device goes from clamp to clamp: of a single clamp nine numbers say what scatter does too
     let parameter = |(shown, along): (usize, usize)| {
         let (neutral, bounds) = if shown == along { (1.0, BOUNDS) } else { (0.0, MOST_CROSS_TALK) };
-        let parameter = Parameter { neutral, bounds, ..linear(CROSS[shown][along], SCALE) };
-        (parameter, column(shown, along, &|_| true))
+        Parameter { neutral, bounds, ..linear(CROSS[shown][along], SCALE) }
     };
-    let nine = pairs().map(parameter).collect();
+    let of_pair = |(shown, along): (usize, usize)| {
+        at_clamps(context, |place, is_there| {
+            let cross_talk = format!("{place}, {} into {}", Axis::ALL[along], Axis::ALL[shown]);
+            let column = column(shown, along, is_there);
+            single(&SENSOR_SCALE, Location::Named(cross_talk), parameter((shown, along)), column)
+        })
+        // of all clamps the nine numbers below say it
+        .split_off(1)
+    };
+    entries.extend(pairs().filter(|(shown, along)| shown != along).flat_map(of_pair));
+    // one device goes from clamp to clamp: of a single clamp nine numbers say what scatter does too
+    let nine = pairs().map(|pair| (parameter(pair), column(pair.0, pair.1, &|_| true))).collect();
     entries.push(Entry::new(&SENSOR_SCALE.effect, Location::AllClamps, nine));
     entries
 }
@@ -105,7 +114,7 @@ fn pairs() -> impl Iterator<Item = (usize, usize)> {
 /// The inverse of what the model counts; of a matrix with intervals as wide as they are there.
 fn shown_per_true(_: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
     let of_part = |part: &FindingPart| match &part.estimates[..] {
-        [true_per_shown] => {
+        [true_per_shown] if entry_of(&true_per_shown.name).is_none() => {
             let (value, low) = (1.0 / true_per_shown.value, 1.0 / true_per_shown.high);
             vec![Estimate { value, low, high: 1.0 / true_per_shown.low, ..true_per_shown.clone() }]
         }
@@ -139,9 +148,16 @@ fn shown_of(true_per_shown: &[Estimate]) -> Matrix3<f64> {
 
 fn scale_observed(finding: &Finding, _: &CalibrationModel) -> String {
     let place = &finding.location;
-    if let [factor] = &finding.estimates[..] {
-        let how = factor.quantity().misread();
-        return format!("The displacement sensor ({place}) reads {how}");
+    if let [only] = &finding.estimates[..] {
+        let Some((shown, along)) = entry_of(&only.name) else {
+            let how = only.quantity().misread();
+            return format!("The displacement sensor ({place}) reads {how}");
+        };
+        let percent = only.quantity().map(|value| 100.0 * value).size().with_unit("%");
+        let (shown, along) = (Axis::ALL[shown], Axis::ALL[along]);
+        return format!(
+            "The displacement sensor along {shown} also shows {percent} of a displacement along {along} ({place})"
+        );
     }
     let off = |estimate: &Estimate| -> Option<((usize, usize), Quantity)> {
         let at = entry_of(&estimate.name)?;

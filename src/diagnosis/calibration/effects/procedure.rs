@@ -94,7 +94,8 @@ pub static THERMAL_DRIFT: CalibrationEffect = CalibrationEffect {
         summary: "the arm drifts with temperature, time or order",
         formula: "d·(T − T̄), d·(t − t̄) or d·e^(−t/t₁), of the robot in {W} or of its tool in {T}; the same of \
                   a joint's zero, Jⱼ·d, or of the length of its link; d·(flange − base) where all links grow",
-        prior: "10 µm/K (an arm of steel of 1 m grows by 12); 20 µm/h, as in a room that warms by \
+        prior: "10 µm/K (an arm of steel of 1 m grows by 12), but 50 µm at least over the recorded \
+                temperatures; 20 µm/h, as in a room that warms by \
                 2 K in an hour, or over a recording without a clock; 50 µm for a cold robot (a UR5 \
                 starts a recording some 60 µm off); of a joint as many µrad, of a link as many µm, of \
                 the arm as many µm/m",
@@ -137,7 +138,7 @@ fn drifts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         let drifting = |frame: Frame, along: &dyn Fn(&Configuration, usize) -> Vector3<f64>| {
             let column = |axis: usize| context.column(|row, there| along(there, axis) * values[row]);
             let names = [0, 1, 2].map(|axis| names[axis].as_str());
-            let parameters = three(&names, usual(course), column);
+            let parameters = three(&names, usual(course, &values), column);
             let location = Location::Form { part: frame.part(), form: format!("with {course}") };
             Entry::new(&THERMAL_DRIFT.effect, location, parameters).by(Law::Drift(course, frame))
         };
@@ -157,7 +158,7 @@ fn of_arm(context: &Context, course: Course, values: &[f64]) -> Entry {
     let (suffix, _) = course.share_unit();
     let column = context.column(|row, there| (there.flange.origin - there.origin[0]) * values[row]);
     let location = Location::Form { part: Part::Arm, form: Warmed::Arm.form(course) };
-    let parameter = linear(format!("growth_{suffix}"), usual(course));
+    let parameter = linear(format!("growth_{suffix}"), usual(course, values));
     single(&THERMAL_DRIFT, location, parameter, column).by(Law::Warms(course, Warmed::Arm))
 }
 
@@ -167,7 +168,7 @@ fn of_joints(context: &Context, course: Course, values: &[f64]) -> Vec<Entry> {
     let weight = 1.0 / joints.len().max(1) as f64;
     let entry = |j: usize, warmed: Warmed, name: String, column: Column| {
         let location = joint_by(j, warmed.form(course));
-        let parameter = linear(name, usual(course));
+        let parameter = linear(name, usual(course, values));
         let mut entry = single(&THERMAL_DRIFT, location, parameter, column).by(Law::Warms(course, warmed));
         // all joints together are as likely as the whole robot
         entry.candidate.weight = weight;
@@ -191,12 +192,15 @@ fn of_joints(context: &Context, course: Course, values: &[f64]) -> Vec<Entry> {
     joints.iter().flat_map(|&j| [Some(zero(j)), length(j)]).flatten().collect()
 }
 
-/// Usual size of a drift's parameters, SI.
-fn usual(course: Course) -> f64 {
+/// Usual size of a drift's parameters, SI. Where a thermometer hardly moves, which may hang far from
+/// the robot, what a cold robot is off by went with what it moved.
+fn usual(course: Course, values: &[f64]) -> f64 {
+    let range = values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+        - values.iter().copied().fold(f64::INFINITY, f64::min);
     match course {
         Course::Order => PER_HOUR,
         Course::WarmUp(_) => WARM_UP,
-        Course::Temperature => PER_KELVIN,
+        Course::Temperature => PER_KELVIN.max(WARM_UP / range.max(f64::MIN_POSITIVE)),
         Course::Time => PER_HOUR / HOUR,
     }
 }

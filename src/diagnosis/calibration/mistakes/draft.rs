@@ -33,10 +33,20 @@ pub(super) struct Draft {
     pub body: usize,
     /// Clamps whose place is free.
     pub loose: Vec<usize>,
+    /// Stations that are nearly one.
+    pub tether: Option<Tether>,
     /// Changes of the angles, in their order: the validation has them too.
     pub joint_changes: Vec<DraftChange>,
     /// What all positions are multiplied by.
     pub positions_changed: Matrix3<f64>,
+}
+
+/// The second station stands where the first one did, but for a move of this size, m and rad.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Tether {
+    pub stations: [usize; 2],
+    pub way: f64,
+    pub turn: f64,
 }
 
 /// What undoes a mistake.
@@ -182,6 +192,7 @@ impl Draft {
             tool: has_tool.then_some(campaign.tool),
             body: 0,
             loose: Vec::new(),
+            tether: None,
             joint_changes: Vec::new(),
             positions_changed: Matrix3::identity(),
         }

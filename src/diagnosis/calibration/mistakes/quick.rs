@@ -17,6 +17,7 @@ mod means;
 mod priors;
 mod residuals;
 mod rough;
+mod tether;
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
@@ -28,6 +29,7 @@ pub(super) use self::residuals::from_points;
 use self::residuals::{FitState, load, residuals, tips};
 pub(super) use self::rough::placed;
 use self::rough::rough;
+use self::tether::{pull, pulled};
 use super::draft::{Draft, DraftChange};
 use crate::calibration::growth::log_volume;
 use crate::linalg::transposed_product;
@@ -118,7 +120,8 @@ fn refined<'a>(
         let off = residuals(draft, &state, &torque, &deflection, columns, &weight);
         let lengths: Vec<f64> = off.iter().map(|off| off.norm()).collect();
         let scale = t_scale(&lengths, least);
-        let log_likelihood = density(&lengths, scale) - moved(body, &state, &nominal, &sd);
+        let log_likelihood =
+            density(&lengths, scale) - moved(body, &state, &nominal, &sd) - pulled(draft, &state);
         if !log_likelihood.is_finite() {
             break;
         }
@@ -176,6 +179,7 @@ fn step<'a>(
             gradient[k] += precision * (state.setup.get(body.free[k]) - nominal[k]);
         }
     }
+    pull(draft, state, free, &mut normal, &mut gradient);
     let change = normal.cholesky()?.solve(&gradient);
     let mut next = state.clone();
     for (k, &parameter) in body.free.iter().enumerate() {

@@ -8,6 +8,7 @@
 //! what is left to the effects: a small move of base or tracker, a clamp that is not quite in its
 //! place.
 
+pub mod drifts;
 pub mod elsewhere;
 mod extended;
 pub mod fixtures;
@@ -79,6 +80,8 @@ pub(super) struct MistakeSearch<'a> {
     pub moves: Vec<PossibleMistake>,
     /// What may have gone wrong with some rows alone.
     pub of_rows: Vec<PossibleMistake>,
+    /// What a zero may drift with, by row of the recording.
+    pub clocks: Vec<Vec<f64>>,
     /// What the rod's file says of the mass on the tip, kg.
     pub tip_mass: f64,
     /// Times that it costs more than usual that base or tip was a rough guess: where a calibration

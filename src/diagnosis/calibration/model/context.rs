@@ -65,6 +65,8 @@ pub struct Context<'a> {
     pub accounted: f64,
     /// Rows, from 0, after which a first look has seen something move.
     pub moved_after: Vec<usize>,
+    /// Rows, and joints, where the load pulls to the other side than the masses of the file say.
+    pub turned: Vec<(usize, usize)>,
 }
 
 /// What a rod's own weight does.
@@ -121,6 +123,14 @@ impl<'a> Context<'a> {
         Context { moved_after: rows.to_vec(), ..self }
     }
 
+    /// The same where the loads of these rows pull these joints to the other side.
+    pub fn turned(mut self, sides: &[(usize, usize)]) -> Self {
+        for &(row, joint) in sides {
+            self.configurations[row].torque[joint] *= -1.0;
+        }
+        Context { turned: sides.to_vec(), ..self }
+    }
+
     /// Of poses that nobody measured, in a recording that came after that of `campaign`.
     pub fn later(asked: &'a Campaign, mode: Mode, setup: &Setup, campaign: &'a Campaign) -> Result<Self> {
         let deflections = Compensation::new(asked, mode)?.deflections(setup, &asked.measurements);
@@ -174,6 +184,7 @@ impl<'a> Context<'a> {
             accounted,
             own_weight,
             moved_after: Vec::new(),
+            turned: Vec::new(),
             compliance_uncertainty: vec![0.0; softest.len()],
             softest,
             modelled_mass: modelled_mass(campaign),

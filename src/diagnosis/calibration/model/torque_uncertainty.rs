@@ -41,6 +41,12 @@ impl TorqueUncertainty {
     }
 }
 
+/// Standard uncertainty of the torque on a joint in one configuration, N·m.
+pub fn of_torque(campaign: &Campaign, joint: usize, there: &Configuration) -> f64 {
+    let size = |moment: Vector3<f64>| there.axis[joint].dot(&moment).abs();
+    moment_and_uncertainty(campaign, joint, there, there.origin[joint], &size).1
+}
+
 /// Where `size` of the moment of all from a joint on, about a point, is largest.
 fn relative(
     campaign: &Campaign,
@@ -49,20 +55,30 @@ fn relative(
     about: &dyn Fn(&Configuration) -> Vector3<f64>,
     size: &dyn Fn(&Configuration, Vector3<f64>) -> f64,
 ) -> f64 {
-    let share = campaign.robot.standard_uncertainty.mass;
-    let links = || campaign.robot.joints.iter().enumerate().skip(joint);
-    let bodies = || links().filter_map(|(k, joint)| Some((k, joint.body?)));
-    let at = |there: &Configuration| -> (f64, f64) {
-        let (mut whole, mut squares) = (Vector3::zeros(), 0.0);
-        for (k, body) in bodies() {
-            let lever = there.link[k].point(&body.centre) - about(there);
-            let moment = lever.cross(&(there.gravity * body.mass));
-            whole += moment;
-            let centre = there.gravity.norm() * body.mass * share * body.centre.norm();
-            squares += (share * size(there, moment)).powi(2) + centre * centre;
-        }
-        (size(there, whole), squares.sqrt())
+    let at = |there: &Configuration| {
+        moment_and_uncertainty(campaign, joint, there, about(there), &|moment| size(there, moment))
     };
     let most = context.configurations.iter().map(at).max_by(|a, b| a.0.total_cmp(&b.0));
     most.map_or(0.0, |(whole, off)| if whole > 0.0 { (off / whole).min(1.0) } else { 0.0 })
+}
+
+/// `size` of the moment of all links from a joint on, about a point, and its standard uncertainty.
+fn moment_and_uncertainty(
+    campaign: &Campaign,
+    joint: usize,
+    there: &Configuration,
+    about: Vector3<f64>,
+    size: &dyn Fn(Vector3<f64>) -> f64,
+) -> (f64, f64) {
+    let share = campaign.robot.standard_uncertainty.mass;
+    let links = campaign.robot.joints.iter().enumerate().skip(joint);
+    let (mut whole, mut squares) = (Vector3::zeros(), 0.0);
+    for (k, body) in links.filter_map(|(k, joint)| Some((k, joint.body?))) {
+        let lever = there.link[k].point(&body.centre) - about;
+        let moment = lever.cross(&(there.gravity * body.mass));
+        whole += moment;
+        let centre = there.gravity.norm() * body.mass * share * body.centre.norm();
+        squares += (share * size(moment)).powi(2) + centre * centre;
+    }
+    (size(whole), squares.sqrt())
 }

@@ -9,6 +9,7 @@
 //! all joints alike    Σⱼ Jⱼ·Σ_k f_k·Δₖⱼ               k from 1, the last move, on
 //! each joint          Jⱼ·Σ_k f_k·Δₖⱼ
 //! by their direction  Jⱼ·Σ_k h_k·sign Δₖⱼ
+//! fading              Jⱼ·(f·x + g·x³/x_max²)       x = Σ_k ρ^(k−1)·Δₖⱼ over all moves, which may saturate
 //! ```
 
 use super::super::model::Context;
@@ -21,6 +22,8 @@ use crate::inference::Variable;
 const MOVES: usize = 3;
 /// Size of a share of a move, and of a turn by its direction, rad.
 const SHARE: f64 = 3e-4;
+/// What is left of a move after the next one, ρ.
+const FADING: [f64; 4] = [0.4, 0.6, 0.75, 0.9];
 const TURN: f64 = 100e-6;
 
 /// All of them.
@@ -37,6 +40,7 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
             TURN,
             &direction,
         ));
+        entries.extend(FADING.iter().filter_map(|left| fading(context, j, *left)));
     }
     entries
 }
@@ -65,4 +69,23 @@ fn of_joint(context: &Context, j: usize, label: String, size: f64, lag: &dyn Fn(
     });
     let follows = format!("follows the moves of joint {} before, not the last one alone", j + 1);
     curve(label, follows, Some(Variable::Order), parameters.collect())
+}
+
+/// What fades from move to move; `None` where the joint stands still.
+fn fading(context: &Context, j: usize, left: f64) -> Option<Entry> {
+    let kept: Vec<f64> = (context.configurations.iter())
+        .scan(0.0, |kept, there| {
+            *kept = left * *kept + there.step[j];
+            Some(*kept)
+        })
+        .collect();
+    let most = kept.iter().fold(0.0, |most: f64, kept| most.max(kept.abs()));
+    let column = |share: &dyn Fn(f64) -> f64| context.turn(j, |row, _| share(kept[row]));
+    let parameters = vec![
+        (linear("share", SHARE), column(&|x| x)),
+        (linear("share_of_cube", SHARE), column(&|x| x.powi(3) / most.powi(2))),
+    ];
+    let label = format!("joint {}, its moves, of which {left} is left after the next", j + 1);
+    let follows = format!("follows the moves of joint {} before, not the last one alone", j + 1);
+    (most > STANDSTILL).then(|| curve(label, follows, Some(Variable::Order), parameters))
 }

@@ -65,7 +65,7 @@ fn as_if(model: &CalibrationModel, candidate: usize) -> Finding {
 fn clocked() -> Campaign {
     let mut campaign = clamps(12);
     for (k, row) in campaign.measurements.rows.iter_mut().enumerate() {
-        (row.time, row.temperature) = (Some(k as f64 * 30.0), Some(20.0 + k as f64 / 100.0));
+        (row.time, row.temperature) = (Some(k as f64 * 30.0), Some(20.0 + k as f64 / 10.0));
     }
     campaign
 }

@@ -155,3 +155,38 @@ fn a_sensor_that_is_not_linear_is_said_to_follow_its_displacement() {
     let (_, left) = diagnosed(&shown(&campaign, &bent, 8));
     assert_eq!(left.as_deref(), Some("displacement along y of the clamps, a curve"));
 }
+
+/// A wave many times within the range, along another axis than the one that it follows.
+#[test]
+fn a_fine_error_of_a_sensor_is_said_to_follow_the_displacement() {
+    let campaign = clamps(30);
+    let bent = |mut u: Vector3<f64>| {
+        u.x += 40.0 * UM * (u.z / (12.0 * UM)).sin();
+        u
+    };
+    let (findings, left) = diagnosed(&shown(&campaign, &bent, 8));
+    let left = left.unwrap_or_default();
+    assert!(findings.is_empty() && left.starts_with("displacement along z of the clamps, "), "{left}");
+}
+
+#[test]
+fn cross_talk_of_one_clamp_is_named_with_its_axes() {
+    let campaign = clamps(30);
+    let recording = &campaign.measurements;
+    let Targets::Points(points) = &recording.targets else { panic!("no points") };
+    let by = |row: usize| {
+        let device = recording.device(row);
+        let along_y = device.inverse().point(&points[row]).y;
+        match recording.groups[recording.rows[row].group].name.to_string() == "clamp 4" {
+            true => device.rotation.column(0) * (0.25 * along_y),
+            false => Vector3::zeros(),
+        }
+    };
+    let (findings, left) = diagnosed(&recorded(&campaign, &by, 0.5 * NOISE, 4));
+    assert_eq!((findings.len(), &left), (1, &None), "{left:?}");
+    assert_eq!(findings[0].effect.name, "sensor_scale");
+    assert_eq!(findings[0].location.to_string(), "clamp 4, y into x");
+    assert_number(&findings[0], "x_per_y", 0.25);
+    let observed = &findings[0].description.observed;
+    assert!(observed.contains("along x also shows") && observed.contains("along y"), "{observed}");
+}

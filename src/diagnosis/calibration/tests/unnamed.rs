@@ -6,6 +6,8 @@ use std::f64::consts::{PI, TAU};
 use super::changed::{Case, Row, assert_changes};
 use super::*;
 use crate::calibration::Compensation;
+use crate::calibration::campaign::Recording;
+use crate::diagnosis::Limitation;
 
 /// From 0 to 1 over the recording.
 fn scaled(values: Vec<f64>) -> Vec<f64> {
@@ -52,6 +54,12 @@ fn links_turn_and_joints_err_together() {
             "joint 2 and joint 3, a surface",
             "joint_3_cosines_12_urad",
             Box::new(|r, row, v| r.q[2] += v * (PI * x[row]).cos() * (TAU * y[row]).cos()),
+        ),
+        (
+            "unknown",
+            "joint 4, turned by joint 2 and joint 3",
+            "joint_4_cosines_21_urad",
+            Box::new(|r, row, v| r.q[3] += v * (TAU * x[row]).cos() * (PI * y[row]).cos()),
         ),
         (
             "unknown",
@@ -181,6 +189,14 @@ fn places_and_ways_to_hold_the_tool_move_it() {
         ),
         (
             "unknown",
+            "order, a walk in the world",
+            "z_cosine_7_um",
+            Box::new(|r, row, v| {
+                r.setup.base_position.z += v * (7.0 * PI * row as f64 / (rows - 1) as f64).cos()
+            }),
+        ),
+        (
+            "unknown",
             "over the workspace",
             "x_cosines_012_um",
             Box::new(|r, row, v| r.setup.base_position.x += v * (PI * y[row]).cos() * (TAU * z[row]).cos()),
@@ -237,4 +253,71 @@ fn what_is_remembered_of_the_move_before_is_no_lag() {
     };
     assert_eq!(with(0), (vec!["readback_lag"], None));
     assert_eq!(with(1), (vec![], Some("order, the last moves of all joints".to_owned())));
+}
+
+/// A tracker's points with a wave of 180 mm over the place along y: no few cosines describe it.
+#[test]
+fn a_fine_error_over_the_place_is_said_to_follow_it() {
+    let with = |size: f64| {
+        let robot = Robot::from_text("tx90.toml", ROBOT, None, None).unwrap();
+        let tool = Vector3::new(0.06, 0.01, 0.12);
+        let mut random = Random::seeded(11, 0);
+        let mut recording = Recording::new(6);
+        for _ in 0..70 {
+            let q: Vec<f64> = (0..6).map(|_| random.uniform(-1.7, 1.7)).collect();
+            let tip = robot.flange_at(&q).point(&tool);
+            let noise = Vector3::from_fn(|_, _| 20.0 * UM * random.normal());
+            let wave = Vector3::new(1.0, -0.5, 0.7) * (size * (TAU * tip.y / 0.18).sin());
+            recording.add(&q, tip + wave + noise).unwrap();
+        }
+        let campaign = Campaign::new(robot, recording).unwrap().with_tool(tool);
+        let found = diagnose_as_recorded(&campaign, Mode::None, &Options::default()).unwrap();
+        let left = found.diagnosis.discrepancy.and_then(|left| left.location);
+        (found.diagnosis.findings.len(), left.map(|location| location.to_string()))
+    };
+    assert_eq!(with(0.0), (0, None));
+    let (findings, left) = with(150.0 * UM);
+    let left = left.unwrap_or_default();
+    assert!(findings == 0 && left.starts_with("place along y, "), "{findings} {left}");
+}
+
+/// What fades over several moves: the last three alone leave much of it.
+#[test]
+fn what_fades_from_move_to_move_is_said_to_follow_the_moves() {
+    let campaign = clamps(16);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let mut kept = 0.0;
+    let shares: Vec<f64> = (context.configurations.iter())
+        .map(|there| {
+            kept = 0.75 * kept + there.step[1];
+            4e-4 * kept
+        })
+        .collect();
+    let by = |row: usize| context.configurations[row].tip_jacobian[1] * shares[row];
+    let recorded = recorded(&campaign, &by, 10.0 * UM, 6);
+    let found = diagnose_as_recorded(&recorded, Mode::Fea, &Options::default()).unwrap();
+    let left = found.diagnosis.discrepancy.and_then(|left| left.location).map(|at| at.to_string());
+    assert_eq!(left.as_deref(), Some("joint 2, its moves, of which 0.75 is left after the next"));
+}
+
+/// Play of joint 5 by load, where the true masses pull to the other side in a few poses of hardly
+/// any load.
+#[test]
+fn poses_of_hardly_any_load_are_not_misread_beside_play() {
+    let campaign = clamps(30);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let torque = |row: usize| context.configurations[row].torque[4];
+    let by = |row: usize| context.configurations[row].tip_jacobian[4] * 4e-4 * (torque(row) + 0.1).signum();
+    let turned = (0..150).filter(|&row| torque(row) < 0.0 && torque(row) + 0.1 > 0.0).count();
+    assert!(turned > 1, "{turned}");
+    let recorded = recorded(&campaign, &by, 8.0 * UM, 7);
+    let found = diagnose_as_recorded(&recorded, Mode::Fea, &Options::default()).unwrap();
+    let names: Vec<String> =
+        found.diagnosis.findings.iter().map(|f| format!("{} {}", f.effect, f.location)).collect();
+    assert_eq!(names, ["backlash joint 5"]);
+    let is_said =
+        |limit: &Limitation| matches!(limit, Limitation::UnknownSide(4, poses) if poses.len() == turned);
+    assert!(found.limits.iter().any(is_said), "{:?}", found.limits);
 }

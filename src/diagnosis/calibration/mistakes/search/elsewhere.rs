@@ -2,11 +2,12 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::super::draft::{Draft, DraftChange};
+use super::super::draft::{Draft, DraftChange, Tether};
 use super::super::motion::moved;
-use super::super::quick::Worthwhile;
+use super::super::quick::{Fit, Worthwhile, fit_from};
+use super::moved_fixtures::KNOCKED;
 use super::score::FAILED;
-use super::{FittedDraft, MistakeSearch, SearchStep};
+use super::{FittedDraft, MistakeSearch, ODDS, SearchStep};
 use crate::statistics::median;
 use crate::units::MM;
 
@@ -54,15 +55,41 @@ impl MistakeSearch<'_> {
         match state.steps.last() {
             Some(SearchStep::Elsewhere(DraftChange::Placed(clamp))) => self.is_displaced(state, *clamp),
             Some(SearchStep::Elsewhere(DraftChange::Devices(_))) => true,
-            Some(SearchStep::Elsewhere(_)) => match &state.fit.bases[..] {
-                [first, .., last] => {
-                    let (way, angle) = moved(first, last);
-                    way > LEAST_MOVE.0 || angle > LEAST_MOVE.1
-                }
-                _ => true,
-            },
+            Some(SearchStep::Elsewhere(DraftChange::Moved(first))) => {
+                is_large(&state.fit) && self.has_to_be_large(state, *first)
+            }
+            Some(SearchStep::Elsewhere(_)) => is_large(&state.fit),
             _ => true,
         }
+    }
+
+    /// False where a small move explains about as much as that of `state`, by itself or with one
+    /// fixture that was knocked: few clamps, or points on a line, leave a turn open, and the place
+    /// of a base far from them with it; and one clamp that moved turns the others about it.
+    fn has_to_be_large(&self, state: &FittedDraft, first: usize) -> bool {
+        let thin = &state.thin;
+        let (Some(new), Some(at)) =
+            (thin.stations.checked_sub(1), thin.rows.iter().rposition(|&row| row < first))
+        else {
+            return true;
+        };
+        let (way, turn) = LEAST_MOVE;
+        let tether = Tether { stations: [thin.station[at], new], way, turn };
+        let tied = Draft { tether: Some(tether), ..thin.clone() };
+        let explains = |draft: &Draft, price: f64| {
+            let near = fit_from(draft, &self.bodies[thin.body], &state.fit, state.fit.rough);
+            near.is_some_and(|near| {
+                !is_large(&near) && near.log_likelihood + price + ODDS > state.fit.log_likelihood
+            })
+        };
+        let knocked = |fixture: usize, station: usize| {
+            let is_own = |&at: &usize| thin.group[at] == fixture && thin.station[at] == station;
+            let rows: Vec<usize> = (0..thin.len()).filter(is_own).collect();
+            !rows.is_empty() && explains(&tied.knocked(&rows, fixture), KNOCKED)
+        };
+        let mut with_one = (0..thin.devices.len()).filter(|_| thin.devices.len() > 2);
+        !explains(&tied, 0.0)
+            && !with_one.any(|fixture| tether.stations.iter().any(|&station| knocked(fixture, station)))
     }
 
     /// False where a frame of its own does not make the rows fit that stood elsewhere.
@@ -119,6 +146,18 @@ impl MistakeSearch<'_> {
             }
         }
         state
+    }
+}
+
+/// False where the last station is where the first one was, but for a move that is left to the
+/// effects.
+fn is_large(fit: &Fit) -> bool {
+    match &fit.bases[..] {
+        [first, .., last] => {
+            let (way, angle) = moved(first, last);
+            way > LEAST_MOVE.0 || angle > LEAST_MOVE.1
+        }
+        _ => true,
     }
 }
 

@@ -32,7 +32,7 @@ impl MistakeSearch<'_> {
             changed.steps.last().and_then(|step| self.heavier_tip(step, from)).map(|score| score - ODDS),
         ];
         let displaced = self.displaced(changed, from).into_iter();
-        let displaced = displaced.chain(self.moved_fixtures(changed, from));
+        let displaced = displaced.chain(self.moved_fixtures(changed, from)).chain(self.drifts(changed, from));
         small.chain(displaced).chain(others.into_iter().flatten()).fold(f64::NEG_INFINITY, f64::max)
     }
 

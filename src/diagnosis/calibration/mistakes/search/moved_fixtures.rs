@@ -9,7 +9,7 @@ use super::left_to_effects::DISPLACED;
 use super::{FittedDraft, MistakeSearch, SearchStep};
 
 /// The price of a fixture that is displaced in some rows: three numbers and the row.
-const KNOCKED: f64 = -12.0;
+pub const KNOCKED: f64 = -12.0;
 
 impl MistakeSearch<'_> {
     /// Scores with each fixture of the rows that the last change of `changed` concerns displaced in
@@ -53,7 +53,7 @@ impl MistakeSearch<'_> {
 
 impl Draft {
     /// The same where some rows of a fixture have one of their own, whose place is free.
-    fn knocked(&self, rows: &[usize], fixture: usize) -> Draft {
+    pub fn knocked(&self, rows: &[usize], fixture: usize) -> Draft {
         let mut draft = self.clone();
         let own = draft.devices.len();
         draft.devices.push(draft.devices[fixture]);

@@ -13,7 +13,7 @@
 use nalgebra::Vector3;
 
 use super::super::draft::{Draft, DraftChange, Rows};
-use super::super::quick::{Fit, LoadedRobot, from_points};
+use super::super::quick::{Fit, LoadedRobot, from_points, weight_of};
 use crate::statistics::median;
 
 /// Degrees of freedom of the distances' distribution.
@@ -133,6 +133,25 @@ impl<'a> Reference<'a> {
             sum += by;
         }
         Some((sum, error))
+    }
+
+    /// By how much the zero of a joint drifts with a clock, which has a number for each row of the
+    /// recording, by least squares with the weights of the fit:
+    ///
+    /// ```text
+    /// c = −Σ w·x·(J·r) / Σ w·x²·|J|²       J what a turn of the joint moves the tip by, r how far it is off
+    /// ```
+    pub fn drift(&self, draft: &Draft, joint: usize, clock: &[f64]) -> Option<f64> {
+        let off = self.offsets(draft);
+        let moved = self.offsets(&draft.with(&DraftChange::Zero { joint, by: SMALL }));
+        let (mut product, mut square) = (0.0, 0.0);
+        for ((off, moved), row) in off.iter().zip(&moved).zip(&draft.rows) {
+            let (along, x) = ((moved - off) / SMALL, *clock.get(*row)?);
+            let weight = weight_of(off.norm() / self.scale);
+            product += weight * x * along.dot(off);
+            square += weight * x * x * along.norm_squared();
+        }
+        (square > 0.0).then(|| -product / square)
     }
 }
 

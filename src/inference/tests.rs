@@ -400,7 +400,7 @@ fn a_name_that_hides_something_unknown_is_given_up() {
 #[test]
 fn a_law_that_is_nearly_right_is_named_and_not_the_curve_that_is() {
     let mut model = Columns::new(COUNT);
-    let right = |x: f64| x * x + 0.006 * (9.0 * x).sin();
+    let right = |x: f64| x * x + 0.005 * (9.0 * x).sin();
     model.add("law", "", column(|x| x * x), false);
     model.add("curve", "x", column(right), true);
     let is_named = |&seed: &u64| effects(&diagnose(&model, &evidence(seed, |x| 60.0 * right(x)))) == ["law"];

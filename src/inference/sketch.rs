@@ -33,8 +33,8 @@ const LENGTHS: [f64; 5] = [0.7, 1.4, 2.8, 5.5, 11.0];
 /// A length is at most this share of its course. What goes on for longer, or over more than some
 /// ten poses, is no scatter.
 const LONGEST: f64 = 0.15;
-/// Lengths of what is no scatter, but walks along its course, and the ln odds from which on it does:
-/// it is not left to errors in common.
+/// Lengths of what is no scatter, but walks along its course, and the ln odds from which on it
+/// does: it is not left to errors in common.
 const TOO_LONG: ([f64; 3], f64) = ([22.0, 44.0, 88.0], 1.5);
 /// Ln of the odds from which on errors hang together.
 const WORTH: f64 = 3.0;

@@ -184,9 +184,9 @@ impl Search<'_> {
         (best.hypothesis, best.left_over)
     }
 
-    /// Pairs that are likelier than those that the way has gone by, each of another effect, the best
-    /// by itself, and the best beside it: one that was taken for all of what two together do is not
-    /// exchanged for both.
+    /// Pairs that are likelier than those that the way has gone by, each of another effect, the
+    /// best by itself, and the best beside it: one that was taken for all of what two together do
+    /// is not exchanged for both.
     fn other_starts(&self, way: &Way, additions: &[f64]) -> Vec<Hypothesis> {
         let effect = |candidate: usize| self.model.candidates()[candidate].effect;
         let short = || way.visited.iter().filter(|own| own.0.len() <= 2);
@@ -309,10 +309,10 @@ impl Search<'_> {
         named.map(|position| self.without(hypothesis, position)).collect()
     }
 
-    /// Does a hypothesis leave as little, per degree of freedom, as a curve beside the `shorter` one
-    /// does, which has more of them? By chance that leaves less by √(2·more)/2ν, one standard
-    /// deviation. Or is what the curve draws better little beside what the names explain: a law that
-    /// is not quite the right one?
+    /// Does a hypothesis leave as little, per degree of freedom, as a curve beside the `shorter`
+    /// one does, which has more of them? By chance that leaves less by √(2·more)/2ν, one standard
+    /// deviation. Or is what the curve draws better little beside what the names explain: a law
+    /// that is not quite the right one?
     fn leaves_as_little(&self, hypothesis: &Hypothesis, shorter: &Hypothesis, longer: &Hypothesis) -> bool {
         let all = self.degrees_of_freedom().max(1) as f64;
         let [left, with_curve, without] = [hypothesis, longer, shorter].map(|own| self.left_rms(own));

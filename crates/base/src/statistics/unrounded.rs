@@ -75,7 +75,8 @@ struct Place {
     weight: f64,
 }
 
-/// The step that all values are multiples of: 0.5, 0.2, 0.1, 0.05 and so on; 0 where they show none.
+/// The step that all values are multiples of: 0.5, 0.2, 0.1, 0.05 and so on; 0 where they show
+/// none.
 fn step(values: &[f64]) -> f64 {
     let steps = (FINEST..0).rev().flat_map(|decade| [5.0, 2.0, 1.0].map(|m| m * 10f64.powi(decade)));
     let is_multiple = |value: &f64, step: f64| {

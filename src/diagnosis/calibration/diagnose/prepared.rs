@@ -4,10 +4,10 @@ use nalgebra::Vector3;
 
 use super::super::effects::registry;
 use super::super::evidence;
+use super::super::model::context::Side;
 use super::super::model::torque_uncertainty::TorqueUncertainty;
 use super::super::model::{CalibrationModel, Context, LinearTerms};
 use super::super::nonparametric;
-use super::sides::Side;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Noise};
 use crate::error::Result;

@@ -13,6 +13,7 @@ use nalgebra::{DVector, Vector3};
 
 use super::super::effects::play::BACKLASH;
 use super::super::model::Context;
+use super::super::model::context::Side;
 use super::super::model::law::{Law, TakenUp};
 use super::super::model::torque_uncertainty::of_torque;
 use super::prepared::Prepared;
@@ -22,9 +23,6 @@ use crate::statistics::ln_normal_mass;
 
 /// Torques that are known better than so many standard uncertainties have the sign that they have.
 const KNOWN: f64 = 3.0;
-
-/// A pose whose load is said to pull to the other side: its row and the joint, both from 0.
-pub type Side = (usize, usize);
 
 /// Poses that are likelier on the other side than the one on which they count now.
 pub fn on_the_other_side(prepared: &Prepared, hypothesis: &Hypothesis, left: &DVector<f64>) -> Vec<Side> {

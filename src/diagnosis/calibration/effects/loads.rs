@@ -29,8 +29,8 @@ const HEAVIER: f64 = 0.3;
 /// How far from level a robot stands that nobody has levelled, rad.
 const LEVEL: f64 = 0.5 * DEG;
 
-/// So many times as soft as its model a rod may seem: a force in kilograms, stated as newtons, makes
-/// it ten times softer.
+/// So many times as soft as its model a rod may seem: a force in kilograms, stated as newtons,
+/// makes it ten times softer.
 const MOST_SOFTNESS: f64 = 12.0;
 
 /// A rod that is softer or stiffer than its model.

@@ -192,8 +192,8 @@ fn of_joints(context: &Context, course: Course, values: &[f64]) -> Vec<Entry> {
     joints.iter().flat_map(|&j| [Some(zero(j)), length(j)]).flatten().collect()
 }
 
-/// Usual size of a drift's parameters, SI. Where a thermometer hardly moves, which may hang far from
-/// the robot, what a cold robot is off by went with what it moved.
+/// Usual size of a drift's parameters, SI. Where a thermometer hardly moves, which may hang far
+/// from the robot, what a cold robot is off by went with what it moved.
 fn usual(course: Course, values: &[f64]) -> f64 {
     let range = values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
         - values.iter().copied().fold(f64::INFINITY, f64::min);

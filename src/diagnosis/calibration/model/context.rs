@@ -18,6 +18,9 @@ use crate::robot::{Body, Effect, Motion, Setup};
 /// scale error of 5 % is indistinguishable from scatter of the readings or of the joints.
 const MOST_COMMON: f64 = 0.1;
 
+/// A pose whose load is said to pull to the other side: its row and the joint, both from 0.
+pub type Side = (usize, usize);
+
 /// All that effects need to know of a campaign and its calibration.
 pub struct Context<'a> {
     pub recording: &'a Recording,
@@ -66,7 +69,7 @@ pub struct Context<'a> {
     /// Rows, from 0, after which a first look has seen something move.
     pub moved_after: Vec<usize>,
     /// Rows, and joints, where the load pulls to the other side than the masses of the file say.
-    pub turned: Vec<(usize, usize)>,
+    pub turned: Vec<Side>,
 }
 
 /// What a rod's own weight does.
@@ -124,7 +127,7 @@ impl<'a> Context<'a> {
     }
 
     /// The same where the loads of these rows pull these joints to the other side.
-    pub fn turned(mut self, sides: &[(usize, usize)]) -> Self {
+    pub fn turned(mut self, sides: &[Side]) -> Self {
         for &(row, joint) in sides {
             self.configurations[row].torque[joint] *= -1.0;
         }

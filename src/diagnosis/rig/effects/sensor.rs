@@ -155,7 +155,7 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
         kind: Kind::Physics,
         summary: "the readings follow temperature or time",
         formula: "y + d·(T − T₀), y + d·(t − t₀), or y + d·(1 − e^(−(t − t₀)/τ))/(1 − e^(−D/τ)) over the \
-            duration D; zero when file or run were zeroed, a step before their first load",
+            duration D; zero at the first reading of the file, or when each run was zeroed, a step before its first load",
         prior: "2 % of the largest reading over the recording: steel of 0.5 m grows by 6 µm/K",
         parameters: &[
             (&["um_per_k"], "drift per kelvin"),
@@ -243,7 +243,8 @@ struct Course {
     weight: f64,
 }
 
-/// With temperature and with time: at one rate, and with time ever more slowly until it has settled.
+/// With temperature and with time: at one rate, and with time ever more slowly until it has
+/// settled.
 fn courses(context: &Context) -> Vec<Course> {
     let data = context.data;
     let known = |value: &dyn Fn(&Datum) -> Option<f64>| {
@@ -289,8 +290,8 @@ fn courses(context: &Context) -> Vec<Course> {
     courses
 }
 
-/// Of each channel, and of all of them: since the zero of the file, and since that of each run, for
-/// a run begins with a new zero.
+/// Of each channel, and of all of them: since the first reading of the file, and since the zero of
+/// each run, for a run begins with a new zero.
 fn drifts(context: &mut Context) -> Vec<Entry> {
     let data = context.data;
     // a sensor that is read elsewhere has a zero of its own
@@ -305,7 +306,7 @@ fn drifts(context: &mut Context) -> Vec<Entry> {
     for course in courses(context) {
         let zeros: HashMap<(usize, u64), f64> =
             runs.iter().map(|(key, run)| (*key, at_zero(data, run, &course.values))).collect();
-        let of_file = |_: &Datum| zeros[&place(&data[0])];
+        let of_file = |_: &Datum| course.values[0];
         let of_run = |d: &Datum| zeros[&place(d)];
         let ways: [&dyn Fn(&Datum) -> f64; 2] = [&of_file, &of_run];
         for (form, zero) in course.forms.into_iter().zip(ways).take(1 + usize::from(has_runs)) {

@@ -9,8 +9,8 @@ pub struct Memory {
     pub relative: Vec<f64>,
     /// W, N: the load v·W is felt besides the one that acts.
     pub lingering: Vec<f64>,
-    /// D, m: readings show v·D/(1 + v·w̄) besides, of loads of other runs; nothing where none counts.
-    /// D is of a rod as soft as it was read, which is 1 + v·w̄ times as soft as at once.
+    /// D, m: readings show v·D/(1 + v·w̄) besides, of loads of other runs; nothing where none
+    /// counts. D is of a rod as soft as it was read, which is 1 + v·w̄ times as soft as at once.
     pub recovery: Vec<f64>,
     /// w̄: w of the usual reading.
     pub usual: f64,

@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use super::choice::Choice;
 use super::form::FormConstant;
 use super::measured::Measured;
+use super::memory::Memory;
 use super::proposed::{Beside, Law, LawRival, NextRecord, Point};
 use super::remainder::Remainder;
 use super::scan::{Scan, Scanned};
@@ -30,6 +31,9 @@ const CURVE: usize = 6;
 const POINTS: usize = 60;
 /// Data that the law moves by less than this share of the largest are not drawn.
 const DRAWN: f64 = 0.2;
+/// Ln of the odds by which the probability of a loop may be off: its shape has two constants, of
+/// which Laplace's integral is that of a normal distribution, and they are near their bounds.
+const UNSURE: f64 = 1.0;
 /// Most rivals that are reported.
 const MOST_RIVALS: usize = 8;
 
@@ -133,9 +137,10 @@ fn beside(known: &Known, base: &DVector<f64>) -> Beside {
     Beside { terms, background }
 }
 
-/// The best law and all that are not 20 times less likely.
+/// The best law and all that are not 20 times less likely, or as much more as the odds are unsure.
 pub(super) fn alike<'a>(found: &'a Scan, best: &Scanned) -> Vec<&'a Scanned> {
-    let near = found.laws.iter().take_while(|law| law.log_odds > best.log_odds - APART.ln());
+    let unsure = if matches!(best.choice.memory, Memory::BoucWen(_)) { UNSURE } else { 0.0 };
+    let near = found.laws.iter().take_while(|law| law.log_odds > best.log_odds - APART.ln() - unsure);
     near.take(1 + MOST_RIVALS).collect()
 }
 

@@ -12,6 +12,7 @@ mod group;
 mod layout;
 mod recording;
 mod regroup;
+mod temperatures;
 mod warning;
 mod write;
 

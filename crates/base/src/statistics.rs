@@ -14,7 +14,7 @@ pub use bootstrap::percentile_interval;
 pub use estimate::Estimate;
 pub use normal::ln_normal_mass;
 pub use random::Random;
-pub use unrounded::unrounded;
+pub use unrounded::{one_clock, unrounded};
 
 use statrs::function::beta::beta_reg;
 use statrs::function::gamma::gamma_ur;

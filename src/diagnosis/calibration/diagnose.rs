@@ -9,7 +9,6 @@ pub mod memory;
 pub mod prepared;
 pub mod sides;
 pub mod tails;
-pub mod unit_of_force;
 
 use self::arrival::unknown_arrival;
 use self::beside::{calibrated_beside, unequal};
@@ -135,7 +134,6 @@ pub fn diagnose_calibrated<'c>(
         finding.next = next;
     }
     with_rivals(&mut diagnosis, rivals);
-    unit_of_force::add_rivals(&model, campaign.contact_force, &mut diagnosis);
     let law = propose(&model, &diagnosis, &|change| sites(&context, change.len()));
     let mut limits = limits(&context, &model.calibration, &evidence);
     limits.extend(look.scatter.iter().flat_map(|noise| noisy(campaign, noise)));

@@ -283,10 +283,11 @@ type Value<'a> = Box<dyn Fn(usize, &Configuration) -> Option<f64> + 'a>;
 
 fn covariates(context: &Context, data: usize) -> Vec<Covariate> {
     let rows = &context.recording.rows;
+    let temperatures = context.recording.temperatures();
     let mut all: Vec<(Variable, Value)> = vec![
         (Variable::Order, Box::new(|row, _| Some(row as f64))),
         (Variable::Time, Box::new(|row, _| rows[row].time)),
-        (Variable::Temperature, Box::new(|row, _| rows[row].temperature)),
+        (Variable::Temperature, Box::new(|row, _| temperatures.as_ref().map(|own| own[row]))),
         (Variable::Fixture, Box::new(|row, _| Some(rows[row].group as f64))),
     ];
     for axis in Axis::ALL {

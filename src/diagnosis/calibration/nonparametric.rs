@@ -57,7 +57,7 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
     let clocks = [
         (Variable::Order, "the order of the poses", known(&|row| Some(row as f64))),
         (Variable::Time, "the time", known(&|row| rows[row].time)),
-        (Variable::Temperature, "the temperature", known(&|row| rows[row].temperature)),
+        (Variable::Temperature, "the temperature", context.recording.temperatures()),
     ];
     for (variable, name, values) in clocks {
         let label = variable.to_string();

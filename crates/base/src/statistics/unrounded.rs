@@ -69,6 +69,27 @@ pub fn unrounded(values: &[f64], at: &[f64]) -> Vec<f64> {
     (0..values.len()).map(near).collect()
 }
 
+/// Where values of a recording lie, in the order of their `places` in it: at their times, or at those
+/// places where a time is missing or the clock starts anew on the way.
+///
+/// ```
+/// use rodcal_base::statistics::one_clock;
+///
+/// let places = [0.0, 1.0, 2.0];
+/// assert_eq!(one_clock(&[Some(5.0), Some(9.0), Some(20.0)], &places), [5.0, 9.0, 20.0]);
+/// assert_eq!(one_clock(&[Some(5.0), Some(9.0), Some(0.0)], &places), places);
+/// assert_eq!(one_clock(&[Some(5.0), None, Some(20.0)], &places), places);
+/// ```
+pub fn one_clock(times: &[Option<f64>], places: &[f64]) -> Vec<f64> {
+    let known = times.iter().copied().collect::<Option<Vec<f64>>>();
+    let goes_on = |times: &Vec<f64>| {
+        let mut by_place: Vec<(f64, f64)> = places.iter().copied().zip(times.iter().copied()).collect();
+        by_place.sort_by(|a, b| a.0.total_cmp(&b.0));
+        by_place.is_sorted_by(|a, b| a.1 <= b.1)
+    };
+    known.filter(goes_on).unwrap_or_else(|| places.to_vec())
+}
+
 struct Place {
     at: f64,
     value: f64,

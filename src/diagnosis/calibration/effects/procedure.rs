@@ -213,7 +213,11 @@ fn courses(context: &Context) -> Vec<(Course, Vec<f64>)> {
         let of_rows = |rows: &[Row]| rows.iter().map(number).collect::<Option<Vec<f64>>>();
         Some([of_rows(since)?, of_rows(rows)?])
     };
-    let (temperature, time) = (known(|row| row.temperature), known(|row| row.time));
+    let time = known(|row| row.time);
+    // what is asked for later is set, not read from a display
+    let asked = || rows.iter().map(|row| row.temperature).collect();
+    let own = if is_later { asked() } else { context.recording.temperatures() };
+    let temperature: Option<[Vec<f64>; 2]> = context.since.temperatures().zip(own).map(<[_; 2]>::from);
     // a recording without a clock drifts from its first to its last row; what comes later goes on
     let count = |from: usize, rows: usize| (from..from + rows).map(|row| row as f64).collect();
     let order = || [count(0, since.len()), count(if is_later { since.len() } else { 0 }, rows.len())];

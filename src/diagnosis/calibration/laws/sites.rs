@@ -285,7 +285,8 @@ impl Robot<'_> {
         };
         let time = all(&|row| rows[row].time);
         let order = all(&|row| Some(row as f64));
-        let temperature = all(&|row| rows[row].temperature);
+        let temperatures = self.context.recording.temperatures();
+        let temperature = all(&|row| Some(temperatures.as_ref()?[row]));
         let of_order = order.map(|n| clock(measure("n", "number of poses before", "", 1.0), &n, OF_TIME));
         let of_time = time.as_ref().map(|t| clock(measure("t", "time", "s", 1.0), t, OF_TIME));
         let of_temperature = temperature.map(|values| {

@@ -7,7 +7,6 @@
 
 use super::super::diagnose::CalibrationDiagnosis;
 use super::super::diagnose::prepared::Prepared;
-use super::super::diagnose::unit_of_force::UNITS;
 use super::super::effects::contact::CONTACT_FORCE_VARIATION;
 use super::super::effects::mistakes::{ROD_MISTAKE, UNIT_MISTAKE};
 use super::super::model::law::{Hung, Law};
@@ -16,11 +15,14 @@ use crate::calibration::campaign::Campaign;
 use crate::calibration::{Mode, Options, calibrate};
 use crate::inference::{Effect, Finding, Location, Rival, sketch};
 use crate::rod::Rod;
+use crate::units::{POUND_FORCE, STANDARD_GRAVITY};
 
 /// Tips that are farther apart, as a share of the rod's length, are seen as such.
 const ANOTHER_TIP: f64 = 0.03;
 /// So many rods are tried.
 const MOST: usize = 4;
+/// Units that a force may be in, N.
+const UNITS: [f64; 2] = [STANDARD_GRAVITY, POUND_FORCE];
 
 /// Adds what may be meant, of the files `rods` and the units, to what was found of rod and force.
 pub fn add_rivals(

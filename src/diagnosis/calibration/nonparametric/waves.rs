@@ -7,10 +7,9 @@
 //! ```
 //!
 //! a, b, a_k vectors, x from 0 to 1: the order of the poses (what comes back in waves, and what
-//! walks), the place
-//! of the ball along an axis of {W}, or the displacement that the clamps' sensors show along an
-//! axis of theirs, with vectors in the frame of the device. The sizes of the fine curve are the
-//! spectrum of a Matérn process of length l and roughness ν = 3/2 (C. E. Rasmussen,
+//! walks), the place of the ball along an axis of {W}, or the displacement that the clamps' sensors
+//! show along an axis of theirs, with vectors in the frame of the device. The sizes of the fine
+//! curve are the spectrum of a Matérn process of length l and roughness ν = 3/2 (C. E. Rasmussen,
 //! C. K. I. Williams, *Gaussian Processes for Machine Learning*, 2006, §4.2).
 
 use std::f64::consts::{PI, TAU};

@@ -3,7 +3,8 @@
 
 use super::evidence::noisy;
 use super::*;
-use crate::inference::{DiscrepancyModel, Effect, Finding, Linearised, Rival, infer};
+use crate::diagnosis::calibration::mistakes::mend;
+use crate::inference::{DiscrepancyModel, Effect, Finding, Linearised, infer};
 use crate::robot::{Kinematics, Setup};
 
 /// A coordinate's noise in the simulated campaigns, m: 30 µm of repeatability and 3 µm of sensors.
@@ -213,23 +214,34 @@ fn what_a_centre_of_mass_loads_an_unloaded_drive_with_is_no_effect() {
     }
 }
 
-/// What is stated as a tenth of the force makes a rod ten times too soft, or a force that differs.
+/// What a stated tenth of the force, or the file of another rod, makes of a rod: whatever is named
+/// for it, the file that may be meant is said beside it.
 #[test]
-fn a_contact_force_in_kilograms_is_a_rival_of_what_is_named_for_it() {
-    let mut campaign = with_rods(ROD, ROD, Plan { poses_per_clamp: 25, seed: 4, ..Plan::default() });
-    let unit_is_rival = |campaign: &Campaign| {
-        let found = diagnose_as_recorded(campaign, Mode::Fea, &Options::default()).unwrap().diagnosis;
-        let is_it = |rival: &Rival| {
-            rival.effect.name == "unit_mistake" && rival.location.to_string() == "contact_force_n"
+fn a_force_in_kilograms_and_a_rod_of_the_folder_are_rivals_of_what_is_named_for_them() {
+    let file = |text: &str| crate::rod::Rod::from_toml("rod", text).unwrap();
+    let softer = ROD.replace("youngs_modulus_gpa = 193.0", "youngs_modulus_gpa = 25.0");
+    assert_ne!(softer, ROD);
+    let others = Neighbours { rods: vec![("right.toml".into(), file(&softer))], ..Neighbours::default() };
+    let said = |campaign: &Campaign| -> Vec<String> {
+        let mended = mend(campaign, Mode::Fea, &others, &Options::default()).unwrap();
+        let findings = mended.diagnose().unwrap().diagnosis.findings;
+        let of_one = |own: Finding| {
+            let rivals = own.rivals.iter().map(|rival| format!("{} {}", rival.effect, rival.location));
+            rivals.chain([format!("{} {}", own.effect, own.location)]).collect::<Vec<_>>()
         };
-        found.findings.iter().any(|own| own.rivals.iter().any(is_it))
+        findings.into_iter().flat_map(of_one).collect()
     };
-    assert!(!unit_is_rival(&campaign));
+    let plan = || Plan { poses_per_clamp: 25, seed: 4, ..Plan::default() };
+    let mut campaign = with_rods(ROD, ROD, plan());
+    assert_eq!(said(&campaign), [""; 0]);
     campaign.contact_force = campaign.contact_force.map(|force| force / crate::units::STANDARD_GRAVITY);
-    assert!(unit_is_rival(&campaign));
+    let of_kilograms = said(&campaign);
+    assert!(of_kilograms.contains(&"unit_mistake contact_force_n".into()), "{of_kilograms:?}");
     // no unit of a force is half of a newton
     campaign.contact_force = campaign.contact_force.map(|force| 5.0 * force);
-    assert!(!unit_is_rival(&campaign));
+    assert!(!said(&campaign).iter().any(|own| own.starts_with("unit_mistake")));
+    let of_rod = said(&with_rods(&softer, ROD, plan()));
+    assert!(of_rod.contains(&"rod_mistake right.toml".into()), "{of_rod:?}");
 }
 
 /// A campaign that was recorded with the rod `actual` and has the file of [`ROD`].

@@ -12,7 +12,7 @@ use super::rezeroed::{Shown, is_zeroed_by_direction};
 use crate::diagnosis::rig::numbering::numbered;
 use crate::inference::RunName;
 use crate::rig::readings::{Axis, Direction, Driven, Phase, Reading, Readings};
-use crate::statistics::unrounded;
+use crate::statistics::{one_clock, unrounded};
 
 /// One measured offset.
 #[derive(Debug, Clone, PartialEq)]
@@ -182,16 +182,9 @@ fn impose(data: &mut [Datum]) {
 fn temperatures(rows: &[Reading], chronicle: &Chronicle) -> Vec<Option<f64>> {
     let shown: Vec<Option<f64>> = rows.iter().map(|row| row.temperature).collect();
     let Some(values) = shown.iter().copied().collect::<Option<Vec<f64>>>() else { return shown };
+    let times: Vec<Option<f64>> = rows.iter().map(|row| row.time).collect();
     let places: Vec<f64> = chronicle.rows.iter().map(|own| own.place as f64).collect();
-    let times = rows.iter().map(|row| row.time).collect::<Option<Vec<f64>>>();
-    // a clock that starts anew in each run says nothing of the order of the runs
-    let is_one_clock = |times: &Vec<f64>| {
-        let mut rows: Vec<(f64, f64)> = places.iter().copied().zip(times.iter().copied()).collect();
-        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-        rows.is_sorted_by(|a, b| a.1 <= b.1)
-    };
-    let at = times.filter(is_one_clock).unwrap_or(places);
-    unrounded(&values, &at).into_iter().map(Some).collect()
+    unrounded(&values, &one_clock(&times, &places)).into_iter().map(Some).collect()
 }
 
 fn of_rows(rows: &[Reading], driven: Driven) -> Vec<Datum> {

@@ -24,8 +24,8 @@ const WARM_UPS: [f64; 2] = [0.1, 0.3];
 pub fn clocks(recording: &Recording) -> Vec<Vec<f64>> {
     let rows = &recording.rows;
     let order: Vec<f64> = (0..rows.len()).map(|row| row as f64 / rows.len() as f64).collect();
-    let known = |number: &dyn Fn(usize) -> Option<f64>| (0..rows.len()).map(number).collect();
-    let recorded: [Option<Vec<f64>>; 2] = [known(&|row| rows[row].time), known(&|row| rows[row].temperature)];
+    let times = rows.iter().map(|row| row.time).collect::<Option<Vec<f64>>>();
+    let recorded = [times, recording.temperatures()];
     let warm_ups = WARM_UPS.map(|tau| order.iter().map(|x| -(-x / tau).exp_m1()).collect());
     let all = recorded.into_iter().flatten().chain(warm_ups).chain([order.clone()]);
     all.filter_map(|clock: Vec<f64>| standardised(&clock)).collect()

@@ -69,8 +69,8 @@ pub fn unrounded(values: &[f64], at: &[f64]) -> Vec<f64> {
     (0..values.len()).map(near).collect()
 }
 
-/// Where values of a recording lie, in the order of their `places` in it: at their times, or at those
-/// places where a time is missing or the clock starts anew on the way.
+/// Where values of a recording lie, in the order of their `places` in it: at their times, or at
+/// those places where a time is missing or the clock starts anew on the way.
 ///
 /// ```
 /// use rodcal_base::statistics::one_clock;

@@ -99,10 +99,13 @@ impl MistakeSearch<'_> {
             // beside one that fits only what is better counts
             let least = if self.has_failed(&best) { f64::NEG_INFINITY } else { best.score };
             let tried = self.extended(&best, least);
+            // no physics makes a first guess another one
+            let is_guess =
+                |state: &FittedDraft| state.steps.last().is_some_and(|step| self.change(step).is_guess());
             let is_next = |state: &&FittedDraft| {
                 self.is_better(state, &best)
                     && !self.has_failed(state)
-                    && state.score - self.of_effects(state, &best, &tried) > ODDS
+                    && (is_guess(state) || state.score - self.of_effects(state, &best, &tried) > ODDS)
             };
             let next = tried.iter().find(is_next);
             let next = match next {

@@ -18,8 +18,9 @@ use crate::statistics::median;
 
 /// Degrees of freedom of the distances' distribution.
 const NU: f64 = 4.0;
-/// A fit of some rows may be off where it knows nothing, as a share of the reach.
-const ELSEWHERE: f64 = 1e-3;
+/// A fit of some rows may be off where it knows nothing, as a share of the reach: as little as a
+/// fit of most rows, or as much as one of a few.
+pub const ELSEWHERE: [f64; 2] = [1e-3, 1e-2];
 /// Rows that are farther out than so many scales do not fit; of a scale that is itself generous,
 /// fewer.
 pub const FAR: f64 = 8.0;
@@ -64,10 +65,15 @@ impl<'a> Reference<'a> {
         Reference { fit, body, known: (draft, tips), centres, scale: fit.scale, far: FAR * fit.scale }
     }
 
-    /// By a fit of some rows of `draft`.
-    pub fn of_some(draft: &'a Draft, body: &'a LoadedRobot<'a>, fit: &'a Fit) -> Reference<'a> {
+    /// By a fit of some rows of `draft`, which may be off by a share of the reach elsewhere.
+    pub fn of_some(
+        draft: &'a Draft,
+        body: &'a LoadedRobot<'a>,
+        fit: &'a Fit,
+        elsewhere: f64,
+    ) -> Reference<'a> {
         let all = Reference::of_all(draft, body, fit);
-        let elsewhere = ELSEWHERE * body.reach;
+        let elsewhere = elsewhere * body.reach;
         Reference { scale: fit.scale.max(elsewhere), far: all.far.max(FAR_ELSEWHERE * elsewhere), ..all }
     }
 

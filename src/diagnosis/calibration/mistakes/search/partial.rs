@@ -6,7 +6,7 @@
 
 use super::super::draft::{Draft, DraftChange, Rows};
 use super::super::quick::{Fit, Worthwhile, fit, fit_from};
-use super::part::{Reference, most, within};
+use super::part::{ELSEWHERE, Reference, most, within};
 use super::{FittedDraft, MistakeSearch, SearchStep};
 use crate::parallel::in_parallel;
 use crate::statistics::median;
@@ -26,12 +26,13 @@ const DISTINCT: f64 = 10.0;
 /// Least step of a joint's zero that somebody made: a coupling slips by half a milliradian or so by
 /// itself, rad (m of a prismatic joint).
 const LEAST_ZERO: f64 = 0.05 * DEG;
-/// Stretches that become states, of each fit.
+/// Stretches that become states, of each reference.
 const MOST: usize = 3;
 
 /// A change of some rows, about one of several fits.
 struct Place {
-    start: usize,
+    /// The number of the reference that shows it.
+    seen_from: usize,
     number: usize,
     rows: Rows,
     gain: f64,
@@ -49,19 +50,22 @@ impl MistakeSearch<'_> {
         }
         let draft = self.changed(&from.steps);
         let body = &self.bodies[from.thin.body];
-        let references: Vec<Reference> = (0..starts.len())
-            .map(|k| match k {
-                0 => Reference::of_all(&from.thin, body, &starts[k]),
-                _ => Reference::of_some(&from.thin, body, &starts[k]),
-            })
-            .collect();
+        // what leaves nothing that fits is worth a second look from farther away
+        let off = if self.has_failed(from) { &ELSEWHERE[..] } else { &ELSEWHERE[..1] };
+        let of_some = |off: &f64| {
+            (1..starts.len())
+                .map(|k| (k, Reference::of_some(&from.thin, body, &starts[k], *off)))
+                .collect::<Vec<_>>()
+        };
+        let mut references = vec![(0, Reference::of_all(&from.thin, body, &starts[0]))];
+        references.extend(off.iter().flat_map(of_some));
         let lengths: Vec<Vec<f64>> =
-            references.iter().map(|reference| reference.lengths(&from.thin)).collect();
+            references.iter().map(|(_, reference)| reference.lengths(&from.thin)).collect();
         let places = in_parallel(self.of_rows.len(), |number| {
             let own = &self.of_rows[number];
             let changed = self.thinned(&draft.with(&own.change));
             let entry = |k: usize| {
-                let reference = &references[k];
+                let (_, reference) = &references[k];
                 if let DraftChange::Zero { joint, .. } = own.change {
                     let far: Vec<usize> =
                         (0..from.thin.len()).filter(|&at| lengths[k][at] > reference.far).collect();
@@ -73,23 +77,23 @@ impl MistakeSearch<'_> {
                     let change = DraftChange::Zero { joint, by };
                     let gains = reference.gains(&from.thin, &lengths[k], &from.thin.with(&change));
                     let (rows, gain) = most(&from.thin, &gains)?;
-                    return Some(Place { start: k, number, rows, gain, change });
+                    return Some(Place { seen_from: k, number, rows, gain, change });
                 }
                 let gains = reference.gains(&from.thin, &lengths[k], &changed);
                 let (rows, gain) = most(&from.thin, &gains)?;
-                Some(Place { start: k, number, rows, gain, change: own.change.clone() })
+                Some(Place { seen_from: k, number, rows, gain, change: own.change.clone() })
             };
-            (0..starts.len()).filter_map(entry).collect::<Vec<_>>()
+            (0..references.len()).filter_map(entry).collect::<Vec<_>>()
         });
         let mut all: Vec<Place> = places.into_iter().flatten().collect();
         all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         let mut chosen: Vec<Place> = Vec::new();
-        let mut taken = vec![0; starts.len()];
+        let mut taken = vec![0; references.len()];
         for place in all {
             let is_known =
                 chosen.iter().any(|known| known.number == place.number && known.rows == place.rows);
-            if taken[place.start] < MOST && !is_known {
-                taken[place.start] += 1;
+            if taken[place.seen_from] < MOST && !is_known {
+                taken[place.seen_from] += 1;
                 chosen.push(place);
             }
         }
@@ -112,10 +116,10 @@ impl MistakeSearch<'_> {
         let is_blurred = from.thin.devices.len() > 1 && median(&sizes).is_some_and(|size| size < blurred);
         chosen.retain(|place| !is_blurred || !is_small(&place.change));
         let states = in_parallel(chosen.len(), |at| {
-            let Place { start, number, rows, change, .. } = &chosen[at];
+            let Place { seen_from, number, rows, change, .. } = &chosen[at];
             let mut steps = from.steps.clone();
             steps.push(SearchStep::Part(*number, within(*rows, change)));
-            self.begun(&steps, &starts[*start])
+            self.begun(&steps, &starts[references[*seen_from].0])
         });
         states.into_iter().flatten().collect()
     }
@@ -152,7 +156,7 @@ impl MistakeSearch<'_> {
             let Some((rows, gain)) = most(&before, &gains) else { continue };
             let gain = gain + other.log_prior;
             if best.as_ref().is_none_or(|best| gain > best.gain) {
-                best = Some(Place { start: 0, number, rows, gain, change });
+                best = Some(Place { seen_from: 0, number, rows, gain, change });
             }
         }
         let Some(Place { number, rows, change, .. }) = best else { return state };

@@ -42,7 +42,10 @@ type Wave = fn(f64) -> f64;
 /// All periods, over a coordinate in time from 0 to 1.
 pub(super) fn in_time(along: Along, coordinate: &Coordinate, data: &[Datum]) -> Vec<Entry> {
     let known: Vec<usize> = (0..data.len()).filter(|&i| coordinate[i].is_some()).collect();
-    let Some(halves) = halves(known.iter().filter_map(|&i| coordinate[i])) else { return Vec::new() };
+    let different = numbered(known.iter().filter_map(|&i| coordinate[i]).map(f64::to_bits));
+    let Some(halves) = halves(different.into_iter().max().map_or(0, |last| last + 1)) else {
+        return Vec::new();
+    };
     let x: Vec<f64> = coordinate.iter().map(|x| x.unwrap_or(0.0)).collect();
     let start: Vec<f64> = starts(coordinate, data).into_iter().map(|x| x.unwrap_or(0.0)).collect();
     let has_zeros = known.iter().any(|&i| data[i].run != data[known[0]].run);
@@ -68,8 +71,9 @@ pub(super) fn of_displays(data: &[Datum], deflections: &[f64]) -> Vec<Entry> {
         let x: Vec<f64> = shown.iter().map(|shown| shown / range).collect();
         // the one that moves most shows it
         let widest = channels.iter().find(|group| largest(group) >= range);
-        let level = |&i: &usize| (LEVELS * x[i]).round();
-        let halves = widest.filter(|_| range > 0.0).and_then(|group| halves(group.iter().map(level)));
+        let halves = widest
+            .filter(|_| range > 0.0)
+            .and_then(|group| halves(levels(group.iter().map(|&i| x[i].abs()).collect())));
         let at = |half: usize| {
             let place = format!("{} swings, {name}", half as f64 / FOR_EACH as f64);
             let period = significant(range * FOR_EACH as f64 / half as f64 / UM, 2);
@@ -101,9 +105,22 @@ fn expected(data: &[Datum], deflections: &[f64]) -> Vec<f64> {
     deflections.iter().zip(&line).map(|(deflection, &line)| deflection * steeper[line]).collect()
 }
 
+/// How many different ones there are of what is shown, as parts of the range: those that are the
+/// same begin at the smallest of them. With a sign or without, a reading is one: both waves say as
+/// much of one side as of the other.
+fn levels(mut shown: Vec<f64>) -> usize {
+    shown.sort_by(f64::total_cmp);
+    let (mut count, mut first) = (0, f64::NEG_INFINITY);
+    for x in shown {
+        if x > first + 1.0 / LEVELS {
+            (count, first) = (count + 1, x);
+        }
+    }
+    count
+}
+
 /// The numbers of half swings that so many different x let see; nothing of too few.
-fn halves(x: impl Iterator<Item = f64>) -> Option<std::ops::RangeInclusive<usize>> {
-    let different = numbered(x.map(f64::to_bits)).into_iter().max()? + 1;
+fn halves(different: usize) -> Option<std::ops::RangeInclusive<usize>> {
     let seen = (FOR_EACH as f64 * different as f64 / TO_SEE_ONE) as usize;
     (different >= FEWEST).then_some(FOR_EACH..=seen.min(FOR_EACH * MOST_SWINGS))
 }
@@ -179,6 +196,23 @@ mod tests {
             let wave = (TAU * 2.0 * (i / 2 + 1) as f64 / 24.0).sin();
             assert!((weight - wave).abs() < 1e-12, "{i}: {weight}");
         }
+    }
+
+    #[test]
+    fn readings_of_one_load_are_one_whatever_they_scatter_and_whichever_way_it_pulled() {
+        // on the border of two fiftieths, and at the other side
+        let around = |x: f64| [x - 0.002, x, x + 0.002];
+        assert_eq!(levels([0.25, 0.5, 0.75, 1.0].into_iter().flat_map(around).collect()), 4);
+        assert_eq!(levels(Vec::new()), 0);
+        // four levels each way, read with a scatter, are too few to see anything that repeats
+        let row = |i: usize| {
+            let (sign, level) = (if i / 4 % 2 == 0 { "" } else { "-" }, 1 + i % 4);
+            format!("{sign}y,{}.0{},{},0\n", 5 * level, i % 7, 228 * level)
+        };
+        let text = "axis,load_n,dy_um,dz_um\n".to_owned() + &(0..48).map(row).collect::<String>();
+        let data = datum::all(&Readings::from_text("f", &text).unwrap().rows);
+        let deflections: Vec<f64> = data.iter().map(|d| 45.6e-6 * d.drive()).collect();
+        assert!(of_displays(&data, &deflections).is_empty());
     }
 
     #[test]

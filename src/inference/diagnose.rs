@@ -6,7 +6,7 @@ use nalgebra::DVector;
 
 use crate::inference::columns::background;
 use crate::inference::columns::linearised::Linearised;
-use crate::inference::held_out::confirmed::{apart_from_nothing, confirmed};
+use crate::inference::held_out::confirmed::{apart_from_nothing, confirmed, outdone};
 use crate::inference::held_out::sessions::leave_one_session_out;
 use crate::inference::held_out::{Theme, hold_out};
 use crate::inference::locate::{Structure, along, locate};
@@ -92,26 +92,25 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let held_out = hold_out(model, evidence, &hypothesis.terms);
     let (hypothesis, left_over) =
         confirmed(model, &search, &folded, hypothesis, left_over, held_out.as_ref());
-    let (hypothesis, left_over) = apart_from_nothing(model, &search, hypothesis, left_over);
+    let (mut hypothesis, mut left_over) = apart_from_nothing(model, &search, hypothesis, left_over);
+    let parts_of = |hypothesis: &Hypothesis, left_over: &Option<DiscrepancyModel>| {
+        let beside = left_over.as_ref().and_then(DiscrepancyModel::curve);
+        let at = |position| part(model, &search, hypothesis, position, beside);
+        (0..hypothesis.terms.len()).map(at).collect::<Vec<FindingPart>>()
+    };
+    let mut parts = parts_of(&hypothesis, &left_over);
+    while let Some(position) = outdone(model, &parts, left_over.as_ref()) {
+        let shorter = search.without(&hypothesis, position);
+        let Some(rest) = search.remains(&shorter) else { break };
+        (hypothesis, left_over) = (shorter, Some(rest));
+        parts = parts_of(&hypothesis, &left_over);
+    }
     let none = search.fit(&[]);
     let by_base = search.predicted(&none, evidence, &DVector::zeros(evidence.residual.len()));
     let predicted = search.predicted(&hypothesis, evidence, &model.response(&hypothesis.terms));
     let (before, after) = (&evidence.residual - &by_base, &evidence.residual - &predicted);
-    let mut parts: Vec<(Theme, FindingPart)> = (0..hypothesis.terms.len())
-        .map(|position| {
-            let candidate = &model.candidates()[hypothesis.terms[position].candidate];
-            (
-                Theme::new(candidate),
-                part(
-                    model,
-                    &search,
-                    &hypothesis,
-                    position,
-                    left_over.as_ref().and_then(DiscrepancyModel::curve),
-                ),
-            )
-        })
-        .collect();
+    let theme = |part: FindingPart| (Theme::new(&model.candidates()[part.term.candidate]), part);
+    let mut parts: Vec<(Theme, FindingPart)> = parts.into_iter().map(theme).collect();
     parts.sort_by(|(_, a), (_, b)| b.explains.total_cmp(&a.explains));
     let findings = findings(model, &search, &hypothesis, held_out.as_ref(), rms(&before), parts);
     let lack_of_fit_after = search.lack_of_fit(&hypothesis, &predicted);

@@ -6,8 +6,8 @@ use crate::inference::columns::linearised::Linearised;
 use crate::inference::held_out::Theme;
 use crate::inference::search::Search;
 use crate::inference::search::parts::{coverage_factor_of, estimates};
-use crate::inference::search::selection::{DiscrepancyModel, NAMED};
-use crate::inference::{ForwardModel, HeldOut, Hypothesis, Kind, Term};
+use crate::inference::search::selection::{APART, DiscrepancyModel, NAMED};
+use crate::inference::{FindingPart, ForwardModel, HeldOut, Hypothesis, Kind, Rival, Term};
 
 /// A hypothesis without physics that held-out data do not confirm: where they are predicted no
 /// worse without it, nor without it and another one that it undoes, it has no name. What happened
@@ -119,6 +119,21 @@ pub fn apart_from_nothing(
         (None, false) => (shorter, None),
         _ => (hypothesis, left_over),
     }
+}
+
+/// The name, if any, that stands beside a curve alone: without that another effect would explain so
+/// much more in its place. It names what the curve does not draw right.
+pub fn outdone(
+    model: &Linearised<'_>,
+    parts: &[FindingPart],
+    left_over: Option<&DiscrepancyModel>,
+) -> Option<usize> {
+    left_over.and_then(DiscrepancyModel::curve)?;
+    let effect = |part: &FindingPart| model.candidates()[part.term.candidate].effect;
+    let is_better = |own: &FindingPart, rival: &Rival| {
+        rival.effect != effect(own) && rival.odds * APART < 1.0 && effect(own).kind != Kind::Mistake
+    };
+    parts.iter().position(|own| own.rivals.iter().any(|rival| is_better(own, rival)))
 }
 
 #[cfg(test)]

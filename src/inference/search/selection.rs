@@ -301,11 +301,16 @@ impl Search<'_> {
         Way { hypothesis: path.swap_remove(named), left_over, log_probability: most, visited }
     }
 
-    /// A hypothesis of several effects without each of those that are physics.
+    /// A hypothesis of several effects without each of those that are physics, or something that
+    /// happened to more than a few data.
     fn with_one_name_less(&self, hypothesis: &Hypothesis) -> Vec<Hypothesis> {
-        let kind = |term: &Term| self.model.candidates()[term.candidate].effect.kind;
+        let is_name = |term: &Term| match self.model.candidates()[term.candidate].effect.kind {
+            Kind::Physics => true,
+            Kind::Event => !self.is_event(term),
+            Kind::Mistake => false,
+        };
         let count = hypothesis.terms.len();
-        let named = (0..count).filter(|&k| count > 1 && kind(&hypothesis.terms[k]) == Kind::Physics);
+        let named = (0..count).filter(|&k| count > 1 && is_name(&hypothesis.terms[k]));
         named.map(|position| self.without(hypothesis, position)).collect()
     }
 

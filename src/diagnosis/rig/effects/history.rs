@@ -138,7 +138,7 @@ pub static HYSTERESIS: RigEffect = RigEffect {
         name: "hysteresis",
         kind: Kind::Physics,
         summary: "unloading differs from loading, and not by friction",
-        formula: "a loop h of full scale wide at half load, in eight forms",
+        formula: "a loop h of full scale wide at half load, in ten forms",
         prior: "2 % of full scale: 0.1 % of a load cell, some per cent of bonds and clamps",
         parameters: &[(&["fraction"], "h, width of the loop over full scale")],
         needs: "unloading (column `phase`)",
@@ -240,15 +240,18 @@ fn creeping(context: &mut Context) -> Vec<Entry> {
     entries
 }
 
-/// All loops of hysteresis.
+/// All loops of hysteresis that differ in these readings.
 fn lagging(context: &mut Context) -> Vec<Entry> {
+    let mut known: Vec<Memory> = Vec::new();
     let of_shape = |shape: Loop| {
         let location = match shape.name() {
             "" => Location::Part(Part::Rod),
             form => Location::Form { part: Part::Rod, form: form.into() },
         };
         let fraction = parameter("fraction", 0.0, LOOP, (0.0, 1.0));
-        let action = Action::Memory(hysteresis(context.data, shape)?, History::Loop(shape));
+        let memory = hysteresis(context.data, shape).filter(|memory| !known.contains(memory))?;
+        known.push(memory.clone());
+        let action = Action::Memory(memory, History::Loop(shape));
         Some(alternative(entry(&HYSTERESIS, location, fraction, action)))
     };
     Loop::ALL.into_iter().filter_map(of_shape).collect()

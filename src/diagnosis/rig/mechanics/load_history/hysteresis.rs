@@ -30,6 +30,11 @@ pub enum Loop {
     /// The same by plays that are spread evenly up to half of the largest load (Visintin, ch. III):
     /// beyond half of it the first way up is straight, F·(1 + 2h) − h·F_max.
     NewByPlays,
+    /// As [`Loop::NewByRayleigh`], read from the zero that was taken before the first run: what the
+    /// first run has left, 2h·F_max, stands in all that follow it in its direction.
+    KeptByRayleigh,
+    /// As [`Loop::NewByPlays`], read from one zero: the first run leaves h·F_max.
+    KeptByPlays,
     /// A rod that is loaded for the first time by such plays in every run: other directions between
     /// the runs undo what they remember. ⅔ of [`Loop::NewByPlays`], h wide at half load.
     FirstByPlays,
@@ -40,13 +45,15 @@ pub enum Loop {
 }
 
 impl Loop {
-    pub const ALL: [Loop; 8] = [
+    pub const ALL: [Loop; 10] = [
         Loop::Closed,
         Loop::Symmetric,
         Loop::Remanent,
         Loop::Virgin,
         Loop::NewByRayleigh,
         Loop::NewByPlays,
+        Loop::KeptByRayleigh,
+        Loop::KeptByPlays,
         Loop::FirstByPlays,
         Loop::Turning,
     ];
@@ -61,7 +68,19 @@ impl Loop {
             Loop::Turning => "at each turn",
             Loop::NewByRayleigh => "new before these readings",
             Loop::NewByPlays => "new before these readings, by plays",
+            Loop::KeptByRayleigh => "new before these readings, one zero",
+            Loop::KeptByPlays => "new before these readings, one zero, by plays",
             Loop::FirstByPlays => "loaded for the first time, by plays",
+        }
+    }
+
+    /// The same, read from a zero of each run; and what its first run leaves there, as a share of
+    /// h·F_max, where the one zero shows it.
+    fn of_each_run(self) -> (Loop, f64) {
+        match self {
+            Loop::KeptByRayleigh => (Loop::NewByRayleigh, 2.0),
+            Loop::KeptByPlays => (Loop::NewByPlays, 1.0),
+            other => (other, 0.0),
         }
     }
 }
@@ -73,7 +92,9 @@ pub fn hysteresis(data: &[Datum], shape: Loop) -> Option<Memory> {
         return turning(data);
     }
     let mut memory = none(data);
+    let (shape, leaves) = shape.of_each_run();
     let mut known: HashMap<Direction, f64> = HashMap::new();
+    let mut left: HashMap<Direction, f64> = HashMap::new();
     let remembers = matches!(shape, Loop::NewByRayleigh | Loop::NewByPlays);
     for run in runs(data) {
         let size = |d: &Datum| d.imposed.map_or(d.load, |u| u.displacement.abs() / u.per_newton);
@@ -82,6 +103,10 @@ pub fn hysteresis(data: &[Datum], shape: Loop) -> Option<Memory> {
         let before = known.entry(direction).or_insert(f64::NEG_INFINITY);
         let is_new = largest > *before;
         *before = before.max(largest);
+        let remains = if is_new { 0.0 } else { left.get(&direction).copied().unwrap_or(0.0) };
+        if is_new {
+            left.insert(direction, leaves * largest);
+        }
         let shape = if remembers && !is_new { Loop::Symmetric } else { shape };
         let (shape, share) = match shape {
             Loop::FirstByPlays => (Loop::NewByPlays, 2.0 / 3.0),
@@ -110,10 +135,11 @@ pub fn hysteresis(data: &[Datum], shape: Loop) -> Option<Memory> {
                     memory.lingering[i] = 0.5 * parabola * load + 2.0 * largest;
                 }
                 (Loop::NewByPlays, true) => memory.lingering[i] = 0.5 * parabola * load + largest,
-                (Loop::Closed | Loop::Remanent, false) | (Loop::Turning | Loop::FirstByPlays, _) => {}
+                (Loop::Closed | Loop::Remanent, false)
+                | (Loop::Turning | Loop::FirstByPlays | Loop::KeptByRayleigh | Loop::KeptByPlays, _) => {}
             }
             memory.relative[i] *= share;
-            memory.lingering[i] *= share;
+            memory.lingering[i] = share * memory.lingering[i] + remains;
         }
     }
     Some(memory)

@@ -91,6 +91,30 @@ fn a_new_rod_is_new_once_in_each_direction() {
 }
 
 #[test]
+fn what_the_first_run_has_left_stands_in_the_others_of_one_zero() {
+    let run = |direction: &str, trial: usize| {
+        format!(
+            "{direction},5,load,{trial},0\n{direction},10,load,{trial},0\n{direction},5,unload,{trial},0\n"
+        )
+    };
+    let text =
+        "axis,load_n,phase,trial,dy_um\n".to_owned() + &[run("y", 1), run("-y", 2), run("y", 3)].concat();
+    let data = data(&text);
+    for (kept, each, left) in
+        [(Loop::KeptByRayleigh, Loop::NewByRayleigh, 20.0), (Loop::KeptByPlays, Loop::NewByPlays, 10.0)]
+    {
+        let [kept, each] = [kept, each].map(|shape| hysteresis(&data, shape).unwrap());
+        assert_eq!(kept.relative, each.relative);
+        // of the first run of each direction, then of what follows
+        assert_eq!(kept.lingering[..6], each.lingering[..6]);
+        assert_eq!([6, 7, 8].map(|i| kept.lingering[i] - each.lingering[i]), [left; 3]);
+        // the load goes up to where it was, and comes down to where it was
+        let felt = |i: usize| data[i].load * kept.relative[i] + kept.lingering[i];
+        assert_eq!([felt(7), felt(8)], [felt(1), felt(2)]);
+    }
+}
+
+#[test]
 fn without_time_or_a_way_down_there_is_no_memory() {
     let data = data("axis,load_n,time_s,dy_um\ny,5,1,0\ny,6,,0\n");
     assert!(creep(&data, Clock::File, 1.0).is_none());

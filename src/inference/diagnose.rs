@@ -99,7 +99,7 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
         (0..hypothesis.terms.len()).map(at).collect::<Vec<FindingPart>>()
     };
     let mut parts = parts_of(&hypothesis, &left_over);
-    while let Some(position) = outdone(model, &parts, left_over.as_ref()) {
+    while let Some(position) = outdone(model, &search, &parts, left_over.as_ref()) {
         let shorter = search.without(&hypothesis, position);
         let Some(rest) = search.remains(&shorter) else { break };
         (hypothesis, left_over) = (shorter, Some(rest));

@@ -48,7 +48,7 @@ pub fn folded(evidence: &Evidence) -> Folded {
     background.columns_mut(first, count).copy_from(&own);
     // the columns of the nominal numbers stand in the background from here on
     let nominal = DMatrix::zeros(evidence.residual.len(), 0);
-    let mut evidence = Evidence { background, nominal, ..evidence.clone() };
+    let mut evidence = Evidence { background, nominal, folded: first..first + count, ..evidence.clone() };
     size_offsets(&mut evidence, 0.0);
     Folded { evidence, basis, first }
 }
@@ -88,6 +88,20 @@ pub fn size_offsets(evidence: &mut Evidence, noise: f64) {
     }
 }
 
+/// True where the numbers would have to be farther off than the file says they are known, even if
+/// it says that twice too well; of a folded evidence, or some of its data:
+///
+/// ```text
+/// p(χ²_d > |z|²/4) < 0.01,   d = Σ (1 − var z)      directions that the data determine
+/// ```
+pub fn is_implausible(evidence: &Evidence, hypothesis: &Hypothesis) -> bool {
+    let square: f64 = evidence.folded.clone().map(|k| hypothesis.background[k].powi(2)).sum();
+    let variance = |k: usize| hypothesis.background_covariance[(k, k)];
+    let determined: f64 = evidence.folded.clone().map(|k| (1.0 - variance(k)).max(0.0)).sum();
+    chi_squared_survival(square / UNDERSTATED.powi(2), determined.max(1.0))
+        .is_ok_and(|probability| probability < IMPLAUSIBLE)
+}
+
 impl Folded {
     /// Factors of all numbers, in standard uncertainties, with their covariance.
     pub fn factors(&self, hypothesis: &Hypothesis) -> (DVector<f64>, DMatrix<f64>) {
@@ -99,19 +113,9 @@ impl Folded {
         (factors, known + (all - &self.basis * self.basis.transpose()))
     }
 
-    /// True where the numbers would have to be farther off than the file says they are known, even
-    /// if it says that twice too well:
-    ///
-    /// ```text
-    /// p(χ²_d > |z|²/4) < 0.01,   d = Σ (1 − var z)      directions that the data determine
-    /// ```
+    /// See [`is_implausible`].
     pub fn is_implausible(&self, hypothesis: &Hypothesis) -> bool {
-        let own = self.first..self.first + self.basis.ncols();
-        let square: f64 = own.clone().map(|k| hypothesis.background[k].powi(2)).sum();
-        let variance = |k: usize| hypothesis.background_covariance[(k, k)];
-        let determined: f64 = own.map(|k| (1.0 - variance(k)).max(0.0)).sum();
-        chi_squared_survival(square / UNDERSTATED.powi(2), determined.max(1.0))
-            .is_ok_and(|probability| probability < IMPLAUSIBLE)
+        is_implausible(&self.evidence, hypothesis)
     }
 
     /// What the numbers that moved change in the data.

@@ -33,12 +33,14 @@ pub fn confirmed(
     let Some(held_out) = held_out else { return (hypothesis, before_that) };
     let needless: Vec<&[Theme]> =
         held_out.losses_together().filter(|(_, loss)| *loss <= 0.0).map(|(themes, _)| themes).collect();
-    let without = |own: Theme| {
+    let without = |whole: &Hypothesis, own: Theme| {
         let is_other = |term: &&Term| Theme::new(&model.candidates()[term.candidate]) != own;
-        search.fit(&hypothesis.terms.iter().filter(is_other).cloned().collect::<Vec<_>>())
+        search.fit(&whole.terms.iter().filter(is_other).cloned().collect::<Vec<_>>())
     };
-    let takes_numbers_place =
-        |others: &Hypothesis| folded.is_implausible(others) && !folded.is_implausible(&hypothesis);
+    // what a curve draws is not the numbers' to explain
+    let whole = before_that.as_ref().and_then(DiscrepancyModel::curve).unwrap_or(&hypothesis);
+    let takes_place =
+        |own: Theme| !folded.is_implausible(whole) && folded.is_implausible(&without(whole, own));
     // ln of the likelihoods' ratio: what the data themselves say for a name
     let fits_no_better = |others: &Hypothesis| {
         let [more, less] = [others, &hypothesis].map(|own| search.left_square(own));
@@ -50,8 +52,7 @@ pub fn confirmed(
         let is_needed =
             held_out.independent_loss(own) > 0.0 && !needless.iter().any(|themes| themes.contains(&own));
         candidate.effect.kind == Kind::Event || {
-            let others = without(own);
-            (is_needed && !fits_no_better(&others)) || takes_numbers_place(&others)
+            (is_needed && !fits_no_better(&without(&hypothesis, own))) || takes_place(own)
         }
     };
     let is_found_again = |term: &Term| {
@@ -122,18 +123,24 @@ pub fn apart_from_nothing(
 }
 
 /// The name, if any, that stands beside a curve alone: without that another effect would explain so
-/// much more in its place. It names what the curve does not draw right.
+/// much more in its place. It names what the curve does not draw right, unless it is there in the
+/// place of numbers of the file.
 pub fn outdone(
     model: &Linearised<'_>,
+    search: &Search,
     parts: &[FindingPart],
     left_over: Option<&DiscrepancyModel>,
 ) -> Option<usize> {
-    left_over.and_then(DiscrepancyModel::curve)?;
+    let whole = left_over.and_then(DiscrepancyModel::curve)?;
     let effect = |part: &FindingPart| model.candidates()[part.term.candidate].effect;
     let is_better = |own: &FindingPart, rival: &Rival| {
         rival.effect != effect(own) && rival.odds * APART < 1.0 && effect(own).kind != Kind::Mistake
     };
-    parts.iter().position(|own| own.rivals.iter().any(|rival| is_better(own, rival)))
+    let is_outdone = |position: &usize| {
+        let own = &parts[*position];
+        own.rivals.iter().any(|rival| is_better(own, rival)) && !search.takes_numbers_place(whole, *position)
+    };
+    (0..parts.len()).find(is_outdone)
 }
 
 #[cfg(test)]

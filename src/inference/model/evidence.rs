@@ -1,6 +1,8 @@
 //! A recording as numbers: what is left of the base model, how it scatters, and what hangs
 //! together.
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::inference::noise::correlated_noise::CorrelatedNoise;
@@ -20,6 +22,8 @@ pub struct Evidence {
     /// What the base model is always a little wrong by: n × b, each column times the size of its
     /// unknown factor, whose prior is the standard normal. Part of every hypothesis.
     pub background: DMatrix<f64>,
+    /// Columns of the background that stand for nominal numbers, once they stand there.
+    pub folded: Range<usize>,
     /// The numbers of the model's file and of the set-up that are known to a standard uncertainty.
     pub nominal_numbers: Vec<NominalParameter>,
     /// For each of them a column of n: ∂predicted/∂number times its standard uncertainty.
@@ -95,6 +99,7 @@ impl Evidence {
             residual,
             nuisance: DMatrix::zeros(count, 0),
             background: DMatrix::zeros(count, 0),
+            folded: 0..0,
             nominal_numbers: Vec::new(),
             nominal: DMatrix::zeros(count, 0),
             offsets: DMatrix::zeros(count, 0),
@@ -137,6 +142,7 @@ impl Evidence {
             residual: self.residual.select_rows(rows),
             nuisance: self.nuisance.select_rows(rows),
             background: self.background.select_rows(rows),
+            folded: self.folded.clone(),
             nominal_numbers: self.nominal_numbers.clone(),
             nominal: self.nominal.select_rows(rows),
             offsets: self.offsets.select_rows(rows),

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use nalgebra::DVector;
 
 use crate::inference::Hypothesis;
-use crate::inference::columns::background::size_offsets;
+use crate::inference::columns::background::{is_implausible, size_offsets};
 use crate::inference::columns::linearised::Linearised;
 use crate::inference::model::evidence::rms;
 use crate::inference::noise::scatter::{OFF, SUSPECT, weighted};
@@ -125,7 +125,8 @@ pub fn infer<'a>(
 ///
 /// An effect stays if it explains half as much as the unexplained curve, or more, even where that
 /// is there to take its place (an outlier, which no smooth curve draws), or if what is left is
-/// little beside it or beside the noise (a law of creep that is not quite the right one).
+/// little beside it or beside the noise (a law of creep that is not quite the right one). It stays
+/// too where the numbers of the file would be as far off in its place as they cannot be.
 fn convincing(
     search: &Search,
     hypothesis: Hypothesis,
@@ -145,7 +146,9 @@ fn convincing(
             DiscrepancyModel::Curve(longer) => own(longer, position),
             DiscrepancyModel::Replicates => own(&hypothesis, position),
         };
-        beside_curve > BESIDE * left
+        let whole = unknown.as_ref().and_then(DiscrepancyModel::curve).unwrap_or(&hypothesis);
+        search.takes_numbers_place(whole, position)
+            || beside_curve > BESIDE * left
             || left < (LITTLE * own(&hypothesis, position)).max(LITTLE_IN_NOISE * hypothesis.sigma)
     };
     let kept: Vec<Term> =
@@ -192,6 +195,12 @@ impl Search<'_> {
         let predicted = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
         let left = &self.evidence.residual - predicted;
         left.iter().zip(&self.evidence.weight).map(|(left, weight)| weight * left * left).sum()
+    }
+
+    /// True where the numbers of the file would be as far off as they cannot be in the place of a
+    /// term.
+    pub fn takes_numbers_place(&self, whole: &Hypothesis, position: usize) -> bool {
+        !is_implausible(self.evidence, whole) && is_implausible(self.evidence, &self.without(whole, position))
     }
 
     /// Root mean square of what a hypothesis leaves.

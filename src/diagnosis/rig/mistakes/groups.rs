@@ -14,10 +14,16 @@ use crate::statistics::median;
 
 /// A flipped group has the slope of the others, within this share.
 const ALIKE: f64 = 0.3;
-/// And leaves at most this share of the squares.
+/// And leaves at most this share of the squares, or as much as the others do by so many times:
+/// friction, creep and whatever else acts on all of them.
 const LEFT: f64 = 0.03;
+const TIMES_USUAL: f64 = 3.0;
+/// But no more than this.
+const MOST_LEFT: f64 = 0.15;
 /// What the rod moves under a group, in scatters.
 const TIMES_SCATTER: f64 = 20.0;
+/// Of so many readings; of more it is the surer.
+const FEWEST: f64 = 3.0;
 /// A zero that no play and no friction explains, as a share of the rod's deflection along the axis.
 const FAR: f64 = 0.3;
 /// One of a run.
@@ -50,18 +56,28 @@ fn split(data: &[Datum], line: &Line, key: impl Fn(&Datum) -> i64) -> Vec<(i64, 
     of_key.into_iter().map(|(key, readings)| (key, group(data, readings))).collect()
 }
 
-/// True where the data of a group follow −`slope` instead of `slope`.
-fn is_flipped(data: &[Datum], group: &Group, slope: f64, scatter: f64) -> bool {
-    let loads: Vec<f64> = group.data.iter().map(|&i| data[i].signed_load()).collect();
-    let mean = loads.iter().sum::<f64>() / loads.len() as f64;
-    let all: f64 = loads.iter().map(|x| (slope * (x - mean)).powi(2)).sum();
-    let off: Vec<f64> = group.data.iter().zip(&loads).map(|(&i, x)| data[i].measured + slope * x).collect();
-    let zero = off.iter().sum::<f64>() / off.len() as f64;
-    let left: f64 = off.iter().map(|r| (r - zero).powi(2)).sum();
+/// True where the data of a group follow −`slope` instead of `slope`, as the `right` ones do that.
+fn is_flipped(data: &[Datum], group: &Group, slope: f64, scatter: f64, right: &[&Group]) -> bool {
+    let usual = median(&right.iter().map(|right| left_of(data, right, slope).0).collect::<Vec<_>>());
+    let most = (TIMES_USUAL * usual.unwrap_or(0.0)).clamp(LEFT, MOST_LEFT);
+    let (left, moved) = left_of(data, group, -slope);
     group.has_slope
         && (group.fit.slope / slope + 1.0).abs() < ALIKE
-        && left < LEFT * all
-        && (all / loads.len() as f64).sqrt() > 0.25 * TIMES_SCATTER * scatter
+        && left < most
+        && moved * (group.data.len() as f64 / FEWEST).sqrt() > 0.25 * TIMES_SCATTER * scatter
+}
+
+/// The share of the squares that a straight line of this slope leaves of a group, wherever its zero
+/// is; and how far the line goes, root mean square, m.
+fn left_of(data: &[Datum], group: &Group, slope: f64) -> (f64, f64) {
+    let loads: Vec<f64> = group.data.iter().map(|&i| data[i].signed_load()).collect();
+    let count = loads.len().max(1) as f64;
+    let mean = loads.iter().sum::<f64>() / count;
+    let all: f64 = loads.iter().map(|x| (slope * (x - mean)).powi(2)).sum();
+    let off: Vec<f64> = group.data.iter().zip(&loads).map(|(&i, x)| data[i].measured - slope * x).collect();
+    let zero = off.iter().sum::<f64>() / count;
+    let left: f64 = off.iter().map(|r| (r - zero).powi(2)).sum();
+    (left / all.max(f64::MIN_POSITIVE), (all / count).sqrt())
 }
 
 /// Runs, or directions, of a channel whose sign is the other way than that of the rest; `expected`
@@ -133,16 +149,15 @@ fn flipped_runs(data: &[Datum], line: &Line, hint: Option<f64>) -> Option<(Vec<u
         (_, Some(hint)) => hint.signum(),
         _ => return None,
     };
-    let right: Vec<f64> =
-        usable.iter().map(|(_, g)| g.fit.slope).filter(|slope| slope * sign > 0.0).collect();
-    let slope = median(&right)?;
+    let right: Vec<&Group> = usable.iter().map(|(_, g)| g).filter(|g| g.fit.slope * sign > 0.0).collect();
+    let slope = median(&right.iter().map(|group| group.fit.slope).collect::<Vec<_>>())?;
     let scatter = median(&usable.iter().map(|(_, g)| g.fit.scatter).collect::<Vec<_>>())?;
-    if right.iter().any(|other| (other / slope - 1.0).abs() > ALIKE) {
+    if right.iter().any(|other| (other.fit.slope / slope - 1.0).abs() > ALIKE) {
         return None;
     }
     let wrong: Vec<&&(i64, Group)> =
         usable.iter().filter(|(_, group)| group.fit.slope * sign < 0.0).collect();
-    if wrong.is_empty() || !wrong.iter().all(|(_, group)| is_flipped(data, group, slope, scatter)) {
+    if wrong.is_empty() || !wrong.iter().all(|(_, group)| is_flipped(data, group, slope, scatter, &right)) {
         return None;
     }
     let flipped: Vec<usize> = wrong.iter().flat_map(|(_, group)| group.data.clone()).collect();
@@ -170,7 +185,7 @@ fn flipped_direction(data: &[Datum], line: &Line, hint: Option<f64>) -> Option<(
     };
     let is_it = right.has_slope
         && hint.is_none_or(|hint| right.fit.slope * hint > 0.0)
-        && is_flipped(data, wrong, right.fit.slope, right.fit.scatter);
+        && is_flipped(data, wrong, right.fit.slope, right.fit.scatter, &[right]);
     is_it.then(|| (wrong.data.clone(), Key::new(format!("axis {direction}"))))
 }
 

@@ -19,6 +19,8 @@ pub enum Limitation {
     FewReadings(usize),
     /// The loads jump where the displacement turns, as where it is the displacement that is set.
     JumpsAtTurns,
+    /// Names, by their causes, that together explain as much as a law does, with so many numbers.
+    NamesForLaw(String, usize),
     /// The readings have no folds that could be held out.
     NoFoldsOfReadings,
     /// The calibration did not come to rest.
@@ -70,6 +72,11 @@ impl fmt::Display for Limitation {
                 "The displacement goes in even steps and the load jumps: was the displacement imposed and \
                  the load measured? Then write # driven = \"displacement\" above the table: the loads \
                  are compared with the model instead.",
+            ),
+            Limitation::NamesForLaw(causes, numbers) => write!(
+                f,
+                "These names together explain as much as the proposed law does, with {numbers} numbers: {causes}. The law \
+                 needs fewer and predicts as well, so none of them is named.",
             ),
             Limitation::NoFoldsOfReadings => f.write_str(
                 "The readings are too few to hold any out: no finding is confirmed by \

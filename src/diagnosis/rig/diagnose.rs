@@ -3,6 +3,7 @@
 mod another_rod;
 mod as_measured;
 mod limits;
+mod one_law;
 
 use super::effects::mistakes::UNIT_MISTAKE;
 use super::effects::structure::STIFFNESS_SCALE;
@@ -161,6 +162,19 @@ pub fn diagnose_with(
         another_rod::add_rivals(&others, &model, &mut diagnosis);
         bent = Some(found);
     }
+    let read = if mended.has_data { &mended.readings } else { readings };
+    let files = if mended.has_data { mended.rod.as_ref() } else { rod };
+    let one_law = match mended.found.is_empty() {
+        true => one_law::instead(read, (files, bent.as_ref().or(files)), &diagnosis)?,
+        false => None,
+    };
+    let (one_law, names) = match one_law {
+        Some(one) => {
+            (model, evidence, diagnosis) = (one.model, one.evidence, one.diagnosis);
+            (Some(one.law), Some(one.names))
+        }
+        None => (None, None),
+    };
     as_measured::resize(&model, &evidence, &mut diagnosis);
     if mended.has_data {
         for k in 0..diagnosis.findings.len() {
@@ -180,9 +194,10 @@ pub fn diagnose_with(
         diagnosis.discrepancy = None;
     }
     // of readings that a mistake has spoilt nobody knows what it has left
-    let law = match mended.found.is_empty() {
-        true => propose(&model, &diagnosis, &|change| sites::sites(&model, change)),
-        false => None,
+    let law = match (one_law, mended.found.is_empty()) {
+        (Some(law), _) => Some(law),
+        (None, true) => propose(&model, &diagnosis, &|change| sites::sites(&model, change)),
+        (None, false) => None,
     };
     if !mended.found.is_empty() {
         let recorded = RigModel::with_effects(readings, rod, &Wanted::Like(&[])).ok();
@@ -194,7 +209,8 @@ pub fn diagnose_with(
         model.as_recorded =
             Some(Box::new(AsRecorded { readings: readings.clone(), rod: rod.cloned(), error }));
     }
-    let limits = limits::limits(&model, &evidence);
+    let mut limits = limits::limits(&model, &evidence);
+    limits.extend(names);
     Ok(Diagnosed { absorbed: Vec::new(), not_testable, limits, law, diagnosis, evidence, model })
 }
 

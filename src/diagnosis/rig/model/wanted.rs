@@ -1,11 +1,13 @@
 //! Which candidates a model has: all that its readings allow, or those of another model.
 
 use crate::diagnosis::rig::own_effect::OwnEffect;
-use crate::inference::{Candidate, Effect, Kind};
+use crate::inference::{Candidate, Effect, Kind, UNKNOWN};
 
 /// Which candidates a model shall have.
 pub enum Wanted<'a> {
     All,
+    /// No effect of the library, what has no name alone.
+    Unnamed,
     /// And these, which a lab describes itself.
     AllAnd(&'a [OwnEffect]),
     /// Those that are the same things at the same places as these.
@@ -19,6 +21,7 @@ impl Wanted<'_> {
     pub fn includes(&self, effect: &Effect) -> bool {
         match self {
             Wanted::All | Wanted::AllAnd(_) => true,
+            Wanted::Unnamed => *effect == UNKNOWN,
             Wanted::Like(these) | Wanted::LikeAnd(these, _) => {
                 these.iter().any(|candidate| candidate.effect == effect)
             }
@@ -28,7 +31,7 @@ impl Wanted<'_> {
     /// Effects that a lab describes itself.
     pub fn own(&self) -> &[OwnEffect] {
         match self {
-            Wanted::All | Wanted::Like(_) => &[],
+            Wanted::All | Wanted::Unnamed | Wanted::Like(_) => &[],
             Wanted::AllAnd(own) | Wanted::LikeAnd(_, own) => own,
         }
     }
@@ -36,6 +39,7 @@ impl Wanted<'_> {
     pub fn has(&self, candidate: &Candidate) -> bool {
         match self {
             Wanted::All | Wanted::AllAnd(_) => true,
+            Wanted::Unnamed => candidate.is_nonparametric,
             Wanted::Like(these) | Wanted::LikeAnd(these, _) => {
                 these.iter().any(|known| is_same(candidate, known))
             }

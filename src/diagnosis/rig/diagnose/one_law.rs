@@ -1,0 +1,71 @@
+//! One law where several names would be needed.
+//!
+//! A root that gives way by M^0.6 is a compliant root, an offset of the load and a stiffness that
+//! depends on it, together: each is there for what the others do not draw. Where three names or
+//! more are needed, a law is looked for in their place. It is the answer where it needs fewer
+//! numbers, leaves as little, and predicts readings that were held out as well as the names do.
+
+use crate::diagnosis::Limitation;
+use crate::diagnosis::rig::laws::sites;
+use crate::diagnosis::rig::model::RigModel;
+use crate::diagnosis::rig::model::wanted::Wanted;
+use crate::error::Result;
+use crate::inference::law::{Law, Proposed, propose};
+use crate::inference::{Diagnosis, Evidence, Finding, Kind, ShownBy, diagnose};
+use crate::rig::readings::Readings;
+use crate::rod::Rod;
+
+/// So many names are many.
+const MANY: usize = 3;
+/// A law that leaves at most so much more, as a factor, leaves as little: names may have a curve
+/// beside them, which takes up a part of the scatter.
+const AS_LITTLE: f64 = 1.15;
+
+/// Readings that one law explains without any name.
+pub(super) struct OneLaw {
+    pub model: RigModel,
+    pub evidence: Evidence,
+    pub diagnosis: Diagnosis,
+    pub law: Proposed,
+    /// The names that would be needed instead.
+    pub names: Limitation,
+}
+
+/// The same readings without names, where one law does as well as those of `named`.
+pub(super) fn instead(
+    readings: &Readings,
+    (rod, bent): (Option<&Rod>, Option<&Rod>),
+    named: &Diagnosis,
+) -> Result<Option<OneLaw>> {
+    let physics: Vec<&Finding> =
+        named.findings.iter().filter(|finding| finding.kind() == Kind::Physics).collect();
+    if physics.len() < MANY || physics.len() < named.findings.len() {
+        return Ok(None);
+    }
+    let numbers = physics.iter().map(|finding| finding.estimates.len()).sum::<usize>();
+    let (model, evidence, _) = RigModel::bent_as(readings, rod, &Wanted::Unnamed, bent)?;
+    let diagnosis = diagnose(&model, &evidence);
+    if !diagnosis.discrepancy.as_ref().is_some_and(|left| left.shown_by == ShownBy::Curve) {
+        return Ok(None);
+    }
+    let Some(law) = propose(&model, &diagnosis, &|change| sites::sites(&model, change)) else {
+        return Ok(None);
+    };
+    let does_as_well = law.law.as_ref().is_ok_and(|law| {
+        let held_out = named.held_out.as_ref().map(|names| names.after);
+        let predicts = law.held_out.zip(held_out).is_some_and(|(own, names)| own <= names);
+        numbers_of(law) < numbers && law.noise <= AS_LITTLE * named.noise && predicts && law.more.is_none()
+    });
+    if !does_as_well {
+        return Ok(None);
+    }
+    let mut causes: Vec<&str> = physics.iter().map(|finding| finding.effect.cause).collect();
+    causes.dedup();
+    let names = Limitation::NamesForLaw(causes.join(", "), numbers);
+    Ok(Some(OneLaw { model, evidence, diagnosis, law, names }))
+}
+
+fn numbers_of(law: &Law) -> usize {
+    let own = law.amplitudes.len() + usize::from(law.constant.is_some()) + law.of_loop.len();
+    own + law.second.as_ref().map_or(0, |second| numbers_of(&second.law))
+}

@@ -19,7 +19,7 @@ pub enum Limitation {
     FewReadings(usize),
     /// The loads jump where the displacement turns, as where it is the displacement that is set.
     JumpsAtTurns,
-    /// Names, by their causes, that together explain as much as a law does, with so many numbers.
+    /// Names, by their causes, that would be needed instead of a law, with so many numbers.
     NamesForLaw(String, usize),
     /// The readings have no folds that could be held out.
     NoFoldsOfReadings,
@@ -75,8 +75,8 @@ impl fmt::Display for Limitation {
             ),
             Limitation::NamesForLaw(causes, numbers) => write!(
                 f,
-                "These names together explain as much as the proposed law does, with {numbers} numbers: {causes}. The law \
-                 needs fewer and predicts as well, so none of them is named.",
+                "Without the proposed law something would have to be named that explains no more, with {numbers} numbers \
+                 or more: {causes}. The law needs fewer and predicts as well.",
             ),
             Limitation::NoFoldsOfReadings => f.write_str(
                 "The readings are too few to hold any out: no finding is confirmed by \

@@ -307,6 +307,22 @@ fn a_base_that_is_stated_the_other_way_round() {
     assert!((Vector3::from_column_slice(&mended.campaign.base[..3]) - Vector3::from(BASE.0)).norm() < MM);
 }
 
+/// A clamp that stands aside explains a part of the residuals, and nothing of where the base is.
+#[test]
+fn a_base_the_other_way_round_is_found_beside_a_clamp_that_stands_aside() {
+    let right = tx90();
+    let [x, y, z, roll, pitch, yaw] = right.base;
+    let inverse = Pose::from_xyz_rpy([x, y, z], [roll, pitch, yaw]).inverse();
+    let mut wrong = right.with_base(inverse.origin.into(), inverse.roll_pitch_yaw());
+    let clamps: Vec<usize> = wrong.measurements.rows.iter().map(|row| row.group).collect();
+    for (point, clamp) in points(&mut wrong).iter_mut().zip(clamps) {
+        if clamp == 1 {
+            *point += Vector3::new(0.2, -0.1, 0.1) * MM;
+        }
+    }
+    assert_eq!(found(&wrong)[0], ("frame_mistake".into(), "base".into()));
+}
+
 #[test]
 fn a_tip_that_is_stated_in_another_frame() {
     let [x, y, z] = TOOL;

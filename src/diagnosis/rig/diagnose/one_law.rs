@@ -2,8 +2,9 @@
 //!
 //! A root that gives way by M^0.6 is a compliant root, an offset of the load and a stiffness that
 //! depends on it, together: each is there for what the others do not draw. Where three names or
-//! more are needed, a law is looked for in their place. It is the answer where it needs fewer
-//! numbers, leaves as little, and predicts readings that were held out as well as the names do.
+//! more are needed, or one beside a curve, a law is looked for in their place. It is the answer
+//! where it needs fewer numbers, leaves as little, and predicts readings that were held out as well
+//! as the names do.
 
 use crate::diagnosis::Limitation;
 use crate::diagnosis::rig::laws::sites;
@@ -17,6 +18,8 @@ use crate::rod::Rod;
 
 /// So many names are many.
 const MANY: usize = 3;
+/// A curve has more numbers than these.
+const OF_CURVE: usize = 2;
 /// A law that leaves at most so much more, as a factor, leaves as little: names may have a curve
 /// beside them, which takes up a part of the scatter.
 const AS_LITTLE: f64 = 1.15;
@@ -39,10 +42,13 @@ pub(super) fn instead(
 ) -> Result<Option<OneLaw>> {
     let physics: Vec<&Finding> =
         named.findings.iter().filter(|finding| finding.kind() == Kind::Physics).collect();
-    if physics.len() < MANY || physics.len() < named.findings.len() {
+    let has_curve = named.discrepancy.as_ref().is_some_and(|left| left.shown_by == ShownBy::Curve);
+    let are_many = physics.len() >= MANY || (has_curve && !physics.is_empty());
+    if !are_many || physics.len() < named.findings.len() {
         return Ok(None);
     }
-    let numbers = physics.iter().map(|finding| finding.estimates.len()).sum::<usize>();
+    let of_names = physics.iter().map(|finding| finding.estimates.len()).sum::<usize>();
+    let numbers = of_names + if has_curve { OF_CURVE } else { 0 };
     let (model, evidence, _) = RigModel::bent_as(readings, rod, &Wanted::Unnamed, bent)?;
     let diagnosis = diagnose(&model, &evidence);
     if !diagnosis.discrepancy.as_ref().is_some_and(|left| left.shown_by == ShownBy::Curve) {
@@ -61,7 +67,7 @@ pub(super) fn instead(
     }
     let mut causes: Vec<&str> = physics.iter().map(|finding| finding.effect.cause).collect();
     causes.dedup();
-    let names = Limitation::NamesForLaw(causes.join(", "), numbers);
+    let names = Limitation::NamesForLaw(causes.join(", "), of_names);
     Ok(Some(OneLaw { model, evidence, diagnosis, law, names }))
 }
 

@@ -152,3 +152,24 @@ fn creep_of_a_rod_much_softer_than_its_file_recovers_as_far_as_it_crept() {
         assert!(is_exact || !is_hung_known, "{creep:?}");
     }
 }
+
+/// A root that turns by 150 µrad·(M/10 N·m)^0.6: of names it takes a compliant root, offsets of the
+/// load and a stiffness that depends on it.
+#[test]
+fn a_root_that_gives_way_by_a_power_is_one_law_and_no_names() {
+    let (rod, rows) = (rod(""), bench(4));
+    let (linear, tip) = (compliance(&rod), rod.tip());
+    let shown = |index: usize| {
+        let row: &Bench = &rows[index];
+        let force = Vector3::ith(row.axis.index(), row.load);
+        let moment = tip.cross(&force);
+        let turn = moment.normalize() * 150e-6 * (moment.norm() / 10.0).powf(0.6);
+        linear * force + turn.cross(&tip)
+    };
+    let found = diagnose(&recording(&rows, |_| 20.0, shown, false), Some(&rod)).unwrap();
+    assert_eq!(names(&found), Vec::<&str>::new());
+    let law = found.law.as_ref().unwrap().law.as_ref().unwrap();
+    assert_eq!(law.site.location.to_string(), "root");
+    let (_, exponent) = law.constant.as_ref().unwrap();
+    assert!(exponent.low < 0.6 && 0.6 < exponent.high, "{exponent:?}");
+}

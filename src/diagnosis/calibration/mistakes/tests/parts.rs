@@ -298,3 +298,10 @@ fn a_small_move_that_few_clamps_leave_open_is_left_to_the_effects() {
     }
     assert_eq!(found(&wrong), []);
 }
+
+/// The fits of few rows are far off elsewhere: what is wrong in the middle is seen from there too.
+#[test]
+fn all_signs_of_the_middle_rows() {
+    let wrong = in_rows(&tx90(), 26..58, |q| q.iter_mut().for_each(|q| *q = -*q));
+    assert_eq!(found(&wrong)[0], ("sign_mistake".into(), "q1_deg … q6_deg, from pose 27 to pose 58".into()));
+}

@@ -144,3 +144,25 @@ fn readings_that_all_end_at_one_value_are_cut_off_wherever_the_line_goes() {
     // a display with steps of a quarter of the noise ends so by chance
     assert!(found(&text(&|y, _| y.round()), None).is_empty());
 }
+
+/// Of 2 N a quarter of a newton is an eighth: lines are bent by friction, flipped or not.
+#[test]
+fn a_sign_in_one_run_is_found_beside_friction() {
+    let mut text = "trial,axis,load_n,phase,dy_um\n".to_owned();
+    for trial in 1..=4 {
+        for (load, phase, held) in
+            [(2, "load", -1.0), (4, "load", -1.0), (6, "load", -1.0), (8, "load", -1.0)].into_iter().chain([
+                (6, "unload", 1.0),
+                (4, "unload", 1.0),
+                (2, "unload", 1.0),
+            ])
+        {
+            let sign = if trial == 3 { -1.0 } else { 1.0 };
+            let noise = f64::from((5 * trial + 3 * load) % 7 - 3) / 5.0;
+            let read = sign * (45.6 * (f64::from(load) + 0.25 * held) + noise);
+            text += &format!("{trial},y,{load},{phase},{read:.1}\n");
+        }
+    }
+    let readings = Readings::from_text("f", &text).unwrap();
+    assert_eq!(found(&readings, Some(&rod(ROD_5))), ["sign_mistake dy_um, axis y, trial 3"]);
+}

@@ -24,6 +24,10 @@ const OF_CURVE: usize = 2;
 /// beside them, which takes up a part of the scatter.
 const AS_LITTLE: f64 = 1.15;
 
+/// Numbers of the files may be off by so much more beside the law, as a sum of the squares of their
+/// standard uncertainties.
+const FARTHER: f64 = 9.0;
+
 /// Readings that one law explains without any name.
 pub(super) struct OneLaw {
     pub model: RigModel,
@@ -54,13 +58,22 @@ pub(super) fn instead(
     if !diagnosis.discrepancy.as_ref().is_some_and(|left| left.shown_by == ShownBy::Curve) {
         return Ok(None);
     }
+    // what numbers of the files are then, as Σ z²
+    let square = |background: &[f64]| -> f64 {
+        diagnosis.settled.0.folded.clone().filter_map(|k| background.get(k)).map(|z| z * z).sum()
+    };
     let Some(law) = propose(&model, &diagnosis, &|change| sites::sites(&model, change)) else {
         return Ok(None);
     };
     let does_as_well = law.law.as_ref().is_ok_and(|law| {
         let held_out = named.held_out.as_ref().map(|names| names.after);
         let predicts = law.held_out.zip(held_out).is_some_and(|(own, names)| own <= names);
-        numbers_of(law) < numbers && law.noise <= AS_LITTLE * named.noise && predicts && law.more.is_none()
+        let farther = square(&law.beside.background) - square(named.hypothesis.background.as_slice());
+        numbers_of(law) < numbers
+            && farther < FARTHER
+            && law.noise <= AS_LITTLE * named.noise
+            && predicts
+            && law.more.is_none()
     });
     if !does_as_well {
         return Ok(None);

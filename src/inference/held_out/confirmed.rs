@@ -83,8 +83,8 @@ pub fn confirmed(
     (shorter, left_over)
 }
 
-/// True of what happened once, of what predicts held-out data, and, where nothing is left beside it,
-/// of what more than half of the searches without a fold find again.
+/// True of what happened once, of what predicts held-out data, and, where nothing is left beside
+/// it, of what more than half of the searches without a fold find again.
 fn is_reproduced(kind: Kind, gain: f64, (found, searches): (usize, usize), is_beside: bool) -> bool {
     kind != Kind::Physics || gain > 0.0 || (!is_beside && 2 * found > searches)
 }

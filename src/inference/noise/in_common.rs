@@ -4,8 +4,8 @@
 //! ln p(r) = ln |W| − ½·ln |NᵀWᵀWN| − ½·ν·ln |M·W·r|²     N the nuisance, W as in `correlated_noise.rs`
 //! ```
 //!
-//! the restricted likelihood of what a hypothesis leaves (H. D. Patterson, R. Thompson, *Biometrika*
-//! 58 (1971) 545–554), for shares a and lengths l.
+//! the restricted likelihood of what a hypothesis leaves (H. D. Patterson, R. Thompson,
+//! *Biometrika* 58 (1971) 545–554), for shares a and lengths l.
 
 use nalgebra::DVector;
 

@@ -18,7 +18,7 @@ const MORE_THAN_STATED: f64 = 1.5;
 const MUCH_WORSE: f64 = 2.0;
 const HARDLY_BETTER: f64 = 0.5;
 /// Correlation of neighbours in a run from which on it is said.
-const RESEMBLING: f64 = 0.5;
+const RESEMBLING: f64 = 0.3;
 /// So many rivals are said at once.
 pub const RIVALS_SAID: usize = 2;
 

@@ -23,8 +23,8 @@ pub enum Law {
     /// Compliance of a joint whose loads nobody knows: one parameter for every frame beyond it
     /// where a weight may sit, by its joint; `None` is the flange.
     MassesUnknown(Vec<Option<usize>>),
-    /// A link that bends about a point of its joint's axis, so far along it from the joint's origin,
-    /// m.
+    /// A link that bends about a point of its joint's axis, so far along it from the joint's
+    /// origin, m.
     Bends(f64),
     /// A rod of another stiffness.
     Rod(RodLoad),

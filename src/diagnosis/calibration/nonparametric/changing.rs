@@ -9,8 +9,8 @@
 //!                                 a·p from a row on, scanned
 //! ```
 //!
-//! A grease that warms, a brake that cools, a harmonic drive whose preload fades: else links grow in
-//! the place of the first, and a base that moved stands for the second.
+//! A grease that warms, a brake that cools, a harmonic drive whose preload fades: else links grow
+//! in the place of the first, and a base that moved stands for the second.
 
 use super::super::model::Context;
 use super::super::model::entry::{Entry, linear};

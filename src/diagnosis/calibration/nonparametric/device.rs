@@ -4,8 +4,8 @@
 //! R_c·e·Σ_k a_k·cos(π k x)       x the displacement that is shown along e, from 0 to 1
 //! ```
 //!
-//! of all clamps, for the same sensors go from clamp to clamp more often than not; and of one clamp,
-//! or all, along e by the displacement along another axis: a guide that is worn on one side.
+//! of all clamps, for the same sensors go from clamp to clamp more often than not; and of one
+//! clamp, or all, along e by the displacement along another axis: a guide that is worn on one side.
 
 use nalgebra::Vector3;
 

@@ -11,6 +11,7 @@ use crate::inference::held_out::sessions::leave_one_session_out;
 use crate::inference::held_out::{Theme, hold_out};
 use crate::inference::locate::{Structure, along, locate};
 use crate::inference::model::evidence::rms;
+use crate::inference::noise::in_common::wandering;
 use crate::inference::noise::scatter::{NoiseTest, Tails};
 use crate::inference::noise::suspects::are_many;
 use crate::inference::search::Search;
@@ -133,6 +134,8 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let own = if ratio > ZEROS_APART * ZEROS_APART { noise / (1.0 + ratio).sqrt() } else { noise };
     let is_too_much = evidence.most_scatter.is_some_and(|most| own > times * most);
     let are_many = are_many(evidence, &suspects);
+    // of what hangs together, and only of that: what else is left has been looked for
+    let wanders = evidence.correlated_noise.is_some() && wandering(evidence, &left).is_some();
     let varying = if left_over.is_none() { search.varying(&hypothesis) } else { None };
     let discrepancy = match &left_over {
         Some(DiscrepancyModel::Curve(longer)) => {
@@ -142,6 +145,7 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
             Some(Discrepancy::without_curve(ShownBy::Repeats, after.clone()))
         }
         None if varying.is_some() => varying,
+        None if wanders => Some(Discrepancy::without_curve(ShownBy::Neighbours, after.clone())),
         None if is_contradicted => Some(Discrepancy::without_curve(ShownBy::StatedNoise, after.clone())),
         None if is_too_much => Some(Discrepancy::without_curve(ShownBy::Size, after.clone())),
         None if are_many => Some(Discrepancy::without_curve(ShownBy::Suspects, after.clone())),

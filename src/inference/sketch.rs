@@ -8,42 +8,27 @@
 //!
 //! ```text
 //! ln p = ln p(W·y) + ln |W| − ½·ln |NᵀWᵀWN|       N the nuisance, W as in `correlated_noise.rs`
-//! ln p(r) = ln |W| − ½·ln |NᵀWᵀWN| − ½·ν·ln |M·W·r|²     restricted likelihood of what a hypothesis leaves, by which a and l are found
 //! ```
 //!
-//! (H. D. Patterson, R. Thompson, *Biometrika* 58 (1971) 545–554), less a price for a and l
-//! ([`WORTH`]).
+//! less a price for a and l ([`WORTH`]), which `in_common.rs` finds.
 
 use nalgebra::DVector;
 
 use crate::inference::columns::background::folded;
 use crate::inference::columns::linearised::Linearised;
 use crate::inference::noise::correlated_noise::CorrelatedNoise;
+use crate::inference::noise::in_common::{WORTH, likeliest, walks};
 use crate::inference::noise::whitening::Whitening;
 use crate::inference::score::Moments;
 use crate::inference::search::pruning::{infer, settled};
 use crate::inference::search::selection::{DiscrepancyModel, Pairs};
 use crate::inference::{Evidence, ForwardModel, Hypothesis};
 use crate::linalg::transposed_product;
-use crate::parallel::in_parallel;
 
-/// Shares a and lengths l, in places of the course, that are tried.
-const SHARES: [f64; 6] = [0.2, 0.35, 0.5, 0.7, 0.85, 1.0];
-const LENGTHS: [f64; 5] = [0.7, 1.4, 2.8, 5.5, 11.0];
-/// A length is at most this share of its course. What goes on for longer, or over more than some
-/// ten poses, is no scatter.
-const LONGEST: f64 = 0.15;
-/// Lengths of what is no scatter, but walks along its course, and the ln odds from which on it
-/// does: it is not left to errors in common.
-const TOO_LONG: ([f64; 3], f64) = ([22.0, 44.0, 88.0], 1.5);
-/// Ln of the odds from which on errors hang together.
-const WORTH: f64 = 3.0;
 /// Times that an answer is asked again with the errors that it leaves.
 const ROUNDS: usize = 2;
 /// Ln of the odds by which a recording is too much for errors in common alone.
 const FAR: f64 = 100.0;
-/// Fewer data say nothing.
-const FEWEST: usize = 60;
 
 /// The best hypothesis and what it leaves: neither confirmed by held-out data nor compared with its
 /// rivals.
@@ -131,49 +116,6 @@ fn log_probability_of_none(evidence: &Evidence, noise: CorrelatedNoise) -> f64 {
     moments.score().log_evidence + whitening.log_jacobian()
 }
 
-/// The likeliest errors in common of what is left; `None` where independent ones are as likely.
-fn likeliest(evidence: &Evidence, left: &DVector<f64>) -> Option<CorrelatedNoise> {
-    let (log_likelihood, best) = best_of(evidence, left, &LENGTHS, LONGEST)?;
-    (log_likelihood > restricted(evidence, left, None) + WORTH).then_some(best)
-}
-
-/// True where what is left goes on for longer than any scatter.
-fn walks(evidence: &Evidence, left: &DVector<f64>) -> bool {
-    let (lengths, ln_odds) = TOO_LONG;
-    let ln_of = |lengths: &[f64], longest: f64| Some(best_of(evidence, left, lengths, longest)?.0);
-    match (ln_of(&lengths, 1.0), ln_of(&LENGTHS, LONGEST)) {
-        (Some(walk), Some(scatter)) => walk > scatter + ln_odds,
-        _ => false,
-    }
-}
-
-/// The likeliest errors in common of such lengths, at most of a share `longest` of the course, with
-/// ln of the likelihood; `None` of too few data.
-fn best_of(
-    evidence: &Evidence,
-    left: &DVector<f64>,
-    lengths: &[f64],
-    longest: f64,
-) -> Option<(f64, CorrelatedNoise)> {
-    let places = || evidence.courses.iter().flatten().map(|(_, place)| *place);
-    if places().count() < FEWEST {
-        return None;
-    }
-    let extent = places().fold(f64::NEG_INFINITY, f64::max) - places().fold(f64::INFINITY, f64::min);
-    let lengths = lengths.iter().filter(|length| **length <= longest * extent);
-    let all: Vec<CorrelatedNoise> =
-        lengths.flat_map(|&length| SHARES.map(|share| CorrelatedNoise { share, length })).collect();
-    let tried = in_parallel(all.len(), |k| (restricted(evidence, left, Some(all[k])), all[k]));
-    tried.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))
-}
-
-/// ln p(r), the restricted likelihood of what is left.
-fn restricted(evidence: &Evidence, left: &DVector<f64>, correlated_noise: Option<CorrelatedNoise>) -> f64 {
-    let whitening = Whitening::new(&Evidence { correlated_noise, ..evidence.clone() }, left);
-    let square = whitening.apply(left).norm_squared().max(f64::MIN_POSITIVE);
-    whitening.log_jacobian() - 0.5 * whitening.degrees_of_freedom as f64 * square.ln()
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::DMatrix;
@@ -232,36 +174,5 @@ mod tests {
         assert!(named(0.0, false) >= 4, "{}", named(0.0, false));
         assert!(named(0.0, true) <= 2, "{}", named(0.0, true));
         assert!(named(4.0, true) >= 36, "{}", named(4.0, true));
-    }
-
-    #[test]
-    fn share_and_length_are_found_and_independent_errors_have_none() {
-        for seed in 0..10 {
-            let evidence = evidence(seed, 0.0, true);
-            let found = likeliest(&evidence, &evidence.residual).unwrap();
-            assert!(found.share >= 0.35 && (1.4..=11.0).contains(&found.length), "{seed} {found:?}");
-            let mut random = Random::seeded(seed, 5);
-            let independent = DVector::from_fn(COUNT, |_, _| random.normal());
-            assert_eq!(likeliest(&evidence, &independent), None, "{seed}");
-        }
-    }
-
-    /// A walk goes on for too long to be scatter.
-    #[test]
-    fn a_walk_is_nothing_that_errors_have_in_common() {
-        let walks = (0..20).filter(|&seed| {
-            let mut random = Random::seeded(seed, 6);
-            let mut slow = 0.0;
-            let of_row = |_| {
-                slow += random.normal();
-                slow + random.normal()
-            };
-            let residual: Vec<f64> = (0..COUNT).map(of_row).collect();
-            let evidence = Evidence { residual: residual.clone().into(), ..evidence(0, 0.0, true) };
-            walks(&evidence, &DVector::from_vec(residual))
-        });
-        // of a single coordinate half of them
-        let count = walks.count();
-        assert!(count >= 9, "{count}");
     }
 }

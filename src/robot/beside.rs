@@ -101,7 +101,8 @@ mod tests {
             Effect::Compliance { joint: 1, per_nm: 1e-5 },
             Effect::NonlinearStiffness { joint: 0, power: TorquePower::Square, coefficient: 3e-9 },
             Effect::NonlinearStiffness { joint: 1, power: TorquePower::Cube, coefficient: -2e-11 },
-            Effect::LinkFlexibility { joint: 1, per_nm: 2e-6 },
+            Effect::LinkFlexibility { joint: 1, per_nm: 2e-6, at: 0.0 },
+            Effect::LinkFlexibility { joint: 0, per_nm: 3e-6, at: 0.425 },
             Effect::GravityTilt { per_nm: 4e-6 },
             Effect::Friction { joint: 1, per_nm: 6e-6 },
         ];

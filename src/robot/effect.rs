@@ -12,7 +12,8 @@
 //! weight               c·(horizontal lever of a frame about the joint): the joint deflects under a
 //!                      weight there that nobody knows
 //! link_flexibility     the link before the joint bends: all beyond turns by k·M⊥ about the joint's
-//!                      origin, M⊥ the moment of what pulls beyond, without its part about the axis
+//!                      origin, or another point of its axis, M⊥ the moment about that of what pulls
+//!                      beyond, without its part about the axis
 //! gravity_tilt         the base tilts: all turns by k·Mₕ about the origin of {0}, Mₕ the horizontal
 //!                      part of the moment there
 //! ```
@@ -98,6 +99,8 @@ pub enum Effect {
         joint: usize,
         /// k, rad/(N·m).
         per_nm: f64,
+        /// Where on the joint's axis, from its origin, m.
+        at: f64,
     },
     /// A base that tilts under the arm.
     GravityTilt {

@@ -8,7 +8,7 @@ use super::{Effect, Robot, TorquePower};
 use crate::delimited::Table;
 use crate::error::Result;
 use crate::toml_text::{Number, TomlText, in_unit};
-use crate::units::{DEG, URAD, URAD_PER_NM};
+use crate::units::{DEG, MM, URAD, URAD_PER_NM};
 
 /// Names of the effects.
 const TRANSMISSION_ERROR: &str = "transmission_error";
@@ -44,6 +44,7 @@ pub(super) struct RawEffect {
     at_joint: Option<Spanned<usize>>,
     urad_per_m: Option<Number>,
     urad_per_nm: Option<Number>,
+    at_mm: Option<Number>,
     urad_per_nm2: Option<Number>,
     urad_per_nm3: Option<Number>,
 }
@@ -152,7 +153,7 @@ impl Effect {
 const EXPECTED: &str = "transmission_error (cycles_per_rev, sin_urad, cos_urad; or angle_deg and correction_urad), \
                         encoder_scale (factor), backlash (play_urad, taken_up), wrist_coupling (from_joint, fraction), \
                         readback_lag (fraction; of all joints without joint), joint_compliance (urad_per_nm), joint_nonlinear_stiffness (urad_per_nm2 or urad_per_nm3), \
-                        joint_friction (urad_per_nm), link_flexibility (urad_per_nm), gravity_tilt (urad_per_nm; without joint) or weight (at_joint, urad_per_m)";
+                        joint_friction (urad_per_nm), link_flexibility (urad_per_nm, at_mm), gravity_tilt (urad_per_nm; without joint) or weight (at_joint, urad_per_m)";
 
 /// The section of an effect while it is read.
 struct EffectSection<'a> {
@@ -184,7 +185,10 @@ impl EffectSection<'_> {
             WEIGHT => self.weight(joint),
             JOINT_COMPLIANCE => Ok(Effect::Compliance { joint, per_nm: per_nm()? }),
             JOINT_NONLINEAR_STIFFNESS => self.nonlinear_stiffness(joint),
-            LINK_FLEXIBILITY => Ok(Effect::LinkFlexibility { joint, per_nm: per_nm()? }),
+            LINK_FLEXIBILITY => {
+                let at = raw.at_mm.as_ref().map_or(Ok(0.0), |at| self.finite("at_mm", at, MM))?;
+                Ok(Effect::LinkFlexibility { joint, per_nm: per_nm()?, at })
+            }
             JOINT_FRICTION => Ok(Effect::Friction { joint, per_nm: per_nm()? }),
             READBACK_LAG => self.lacks("fraction"),
             WRIST_COUPLING => self.coupling(joint),
@@ -327,8 +331,11 @@ fn numbers(effect: &Effect) -> String {
         Effect::Lag { fraction, .. } => format!("fraction = {fraction:?}\n"),
         Effect::Friction { per_nm: k, .. }
         | Effect::Compliance { per_nm: k, .. }
-        | Effect::LinkFlexibility { per_nm: k, .. }
         | Effect::GravityTilt { per_nm: k } => per_nm(*k),
+        Effect::LinkFlexibility { per_nm: k, at, .. } if *at == 0.0 => per_nm(*k),
+        Effect::LinkFlexibility { per_nm: k, at, .. } => {
+            format!("{}at_mm = {:?}\n", per_nm(*k), in_unit(*at, MM))
+        }
         Effect::NonlinearStiffness { power, coefficient, .. } => {
             let key = match power {
                 TorquePower::Square => "urad_per_nm2",

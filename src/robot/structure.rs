@@ -3,7 +3,7 @@
 //! Their angles are small (hundreds of µrad), so that the tip's displacement is to first order all
 //! that is left of them:
 //!
-//! Δp = Σⱼ kⱼ·M⊥ⱼ × (p − oⱼ) + k·Mₕ × (p − o₀)
+//! Δp = Σⱼ kⱼ·M⊥ⱼ × (p − oⱼ) + k·Mₕ × (p − o₀), oⱼ the joint's origin or another point of its axis
 
 use nalgebra::Vector3;
 
@@ -70,11 +70,12 @@ impl Kinematics<'_> {
         }
         let pulls = self.pulls(loads);
         let of_effect = |effect: &Effect| match effect {
-            Effect::LinkFlexibility { joint, per_nm } => {
+            Effect::LinkFlexibility { joint, per_nm, at } => {
                 let (frames, pull) = (&self.joints[*joint], &pulls[*joint]);
+                let point = frames.origin + frames.axis * *at;
                 // M⊥ = M − z·(z·M)
-                let across = across(&pull.moment_about(&frames.origin), &frames.axis);
-                (across * *per_nm).cross(&(self.tip - frames.origin))
+                let across = across(&pull.moment_about(&point), &frames.axis);
+                (across * *per_nm).cross(&(self.tip - point))
             }
             Effect::GravityTilt { per_nm } => {
                 let (up, base) = (loads.gravity.try_normalize(0.0), self.base().origin);
@@ -136,8 +137,9 @@ mod tests {
     fn a_link_bends_about_its_joint_and_a_base_about_its_foot() {
         let (k, tool) = (1e-5, Vector3::new(0.0, 0.0, 0.2));
         let turn = k * MASS * GRAVITY * 0.5;
+        let bends = |at: f64| Effect::LinkFlexibility { joint: 0, per_nm: k, at };
         for (effect, height) in
-            [(Effect::LinkFlexibility { joint: 0, per_nm: k }, 0.2), (Effect::GravityTilt { per_nm: k }, 0.5)]
+            [(bends(0.0), 0.2), (bends(0.15), 0.05), (Effect::GravityTilt { per_nm: k }, 0.5)]
         {
             let tip = arm(effect).tip_at(tool, &[0.0]).0 - Vector3::new(0.5, 0.0, 0.5);
             assert!((tip - Vector3::new(height, 0.0, -0.5) * turn).norm() < 1e-12, "{tip}");

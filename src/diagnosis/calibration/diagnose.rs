@@ -120,7 +120,9 @@ pub fn diagnose_calibrated<'c>(
     }
     let mut diagnosis = infer(&prepared.model, &prepared.evidence);
     // what nothing explains may be what such a mass has left
-    if !may_hide_masses && diagnosis.discrepancy.is_some() && may_bend(&prepared) {
+    let may_be_a_mass =
+        diagnosis.discrepancy.as_ref().is_some_and(|left| left.shown_by != ShownBy::Neighbours);
+    if !may_hide_masses && may_be_a_mass && may_bend(&prepared) {
         let is_another;
         BesideMasses { prepared, rivals, is_another } = beside_hidden_masses(campaign, prepared, &look)?;
         if is_another {

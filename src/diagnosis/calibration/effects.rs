@@ -10,6 +10,7 @@
 //! ∂tip/∂parameter through the calibrated kinematics. In the formulae Jⱼ is the tip Jacobian of
 //! joint j, ∂tip/∂qⱼ in {W}, τⱼ the torque of all loads beyond it about its axis.
 
+pub(super) mod bending;
 pub(super) mod contact;
 pub(super) mod device;
 pub(super) mod encoders;

@@ -18,12 +18,14 @@
 //! of each clamp         a vector in {W}, or in {T}
 //! of a clamp's sensors  `device.rs`
 //! of a loose tool, of a bearing that runs out   `loose.rs`
+//! of a torque or a scale, times a clock         `changing.rs`
 //! of the last moves     `moves.rs`
 //! of much finer detail  `waves.rs`
 //! ```
 //!
 //! for every shape is more likely to be smooth than not.
 
+mod changing;
 mod curve;
 mod device;
 mod loose;
@@ -32,16 +34,14 @@ mod waves;
 
 use nalgebra::{Matrix3, Vector3};
 
-use self::curve::{AXES, MOST, SIDES, SIZE, TURN, angle_of, cosine, curve, scaled};
+use self::curve::{AXES, LEAST_TORQUE, MOST, SIDES, SIZE, TURN, angle_of, cosine, curve, scaled, vectors};
 use super::model::Context;
-use super::model::entry::{Column, Entry, linear};
+use super::model::entry::{Entry, linear};
 use super::model::law::Frame;
-use crate::inference::{Parameter, Variable};
+use crate::inference::Variable;
 
 /// The same where a joint turns back: a tooth is worn over a part of a turn.
 const MOST_OF_REVERSAL: usize = 12;
-/// Largest torque below which a joint is not loaded, N·m.
-const LEAST_TORQUE: f64 = 0.1;
 /// Highest order of a product of cosines over the workspace, along each of two joints, and in a
 /// link.
 const ORDER: (usize, usize, usize) = (3, 3, 1);
@@ -93,27 +93,9 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
     entries.extend(clamps(context));
     entries.extend(device::all(context));
     entries.extend(loose::all(context));
+    entries.extend(changing::all(context));
     entries.extend(moves::all(context));
     entries
-}
-
-/// A vector in {W} or in {T} times a weight for each row.
-fn vectors(
-    context: &Context,
-    name: &str,
-    size: f64,
-    frame: Frame,
-    weight: &dyn Fn(usize) -> f64,
-) -> Vec<(Parameter, Column)> {
-    let along = |(axis, letter): (usize, &&str)| {
-        let pattern = match frame {
-            Frame::Tool => &context.patterns.tool[axis],
-            Frame::World => &context.patterns.world[axis],
-        };
-        let column = context.along(pattern, |row, _| weight(row));
-        (linear(format!("{letter}_{name}_um"), size), column)
-    };
-    AXES.iter().enumerate().map(along).collect()
 }
 
 fn along(

@@ -2,6 +2,7 @@
 //! by such robots.
 
 mod changed;
+mod changing;
 mod columns;
 mod descriptions;
 mod evidence;

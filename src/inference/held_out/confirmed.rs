@@ -21,7 +21,8 @@ use crate::inference::{FindingPart, ForwardModel, HeldOut, Hypothesis, Kind, Riv
 /// odds of a name, the names stay: something is there, and this is likelier.
 ///
 /// Nor has a name what most searches without a fold do not find again, where these predict no
-/// better than nothing: something is there, and not the same to all of them.
+/// better than nothing: something is there, and not the same to all of them. Beside something that
+/// has no name it is none even where they find it again: it may be a part of that.
 pub fn confirmed(
     model: &Linearised<'_>,
     search: &Search,
@@ -58,7 +59,7 @@ pub fn confirmed(
     let is_found_again = |term: &Term| {
         let candidate = &model.candidates()[term.candidate];
         let found = held_out.found(model.candidates(), Theme::new(candidate));
-        is_reproduced(candidate.effect.kind, held_out.gain, found)
+        is_reproduced(candidate.effect.kind, held_out.gain, found, before_that.is_some())
     };
     let again: Vec<Term> = hypothesis.terms.iter().filter(|term| is_found_again(term)).cloned().collect();
     if again.len() < hypothesis.terms.len() {
@@ -83,10 +84,10 @@ pub fn confirmed(
     (shorter, left_over)
 }
 
-/// True of what happened once, of what predicts held-out data, and of what more than half of the
-/// searches without a fold find again.
-fn is_reproduced(kind: Kind, gain: f64, (found, searches): (usize, usize)) -> bool {
-    kind != Kind::Physics || gain > 0.0 || 2 * found > searches
+/// True of what happened once, of what predicts held-out data, and, where nothing is left beside
+/// it, of what more than half of the searches without a fold find again.
+fn is_reproduced(kind: Kind, gain: f64, (found, searches): (usize, usize), is_beside: bool) -> bool {
+    kind != Kind::Physics || gain > 0.0 || (!is_beside && 2 * found > searches)
 }
 
 /// A hypothesis without effects of which, with all else that may be there, nothing is as good an
@@ -123,8 +124,8 @@ pub fn apart_from_nothing(
 }
 
 /// The name, if any, that stands beside a curve alone: without that another effect would explain so
-/// much more in its place. It names what the curve does not draw right, unless it is there in the
-/// place of numbers of the file.
+/// much more in its place, or it would be no name, and with it another one does as well. It names
+/// what the curve does not draw right, unless it is there in the place of numbers of the file.
 pub fn outdone(
     model: &Linearised<'_>,
     search: &Search,
@@ -132,13 +133,18 @@ pub fn outdone(
     left_over: Option<&DiscrepancyModel>,
 ) -> Option<usize> {
     let whole = left_over.and_then(DiscrepancyModel::curve)?;
+    let alone = search.additions(&search.fit(&[]));
     let effect = |part: &FindingPart| model.candidates()[part.term.candidate].effect;
-    let is_better = |own: &FindingPart, rival: &Rival| {
-        rival.effect != effect(own) && rival.odds * APART < 1.0 && effect(own).kind != Kind::Mistake
+    let is_better =
+        |own: &FindingPart, rival: &Rival| rival.effect != effect(own) && rival.odds * APART < 1.0;
+    let is_no_name_alone = |own: &FindingPart| {
+        let is_sure = parts.len() > 1 || alone[own.term.candidate] >= NAMED.ln();
+        !is_sure && own.rivals.iter().any(|rival| rival.effect != effect(own))
     };
     let is_outdone = |position: &usize| {
         let own = &parts[*position];
-        own.rivals.iter().any(|rival| is_better(own, rival)) && !search.takes_numbers_place(whole, *position)
+        let is_beaten = own.rivals.iter().any(|rival| is_better(own, rival)) || is_no_name_alone(own);
+        effect(own).kind != Kind::Mistake && is_beaten && !search.takes_numbers_place(whole, *position)
     };
     (0..parts.len()).find(is_outdone)
 }
@@ -149,9 +155,12 @@ mod tests {
 
     #[test]
     fn what_neither_predicts_nor_comes_back_has_no_name() {
-        assert!(!is_reproduced(Kind::Physics, -0.1, (2, 4)));
-        assert!(is_reproduced(Kind::Physics, -0.1, (3, 4)));
-        assert!(is_reproduced(Kind::Physics, 0.01, (0, 4)));
-        assert!(is_reproduced(Kind::Event, -0.1, (0, 4)) && is_reproduced(Kind::Mistake, -0.1, (0, 4)));
+        for is_beside in [false, true] {
+            let is_reproduced = |kind, gain, found| is_reproduced(kind, gain, found, is_beside);
+            assert!(!is_reproduced(Kind::Physics, -0.1, (2, 4)));
+            assert_eq!(is_reproduced(Kind::Physics, -0.1, (3, 4)), !is_beside);
+            assert!(is_reproduced(Kind::Physics, 0.01, (0, 4)));
+            assert!(is_reproduced(Kind::Event, -0.1, (0, 4)) && is_reproduced(Kind::Mistake, -0.1, (0, 4)));
+        }
     }
 }

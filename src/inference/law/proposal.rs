@@ -23,15 +23,15 @@ const UNLIKELY: f64 = -5.0;
 const LITTLE: f64 = 0.5;
 
 /// A law for what `diagnosis` left unexplained; `None` where nothing was, or where what is left is
-/// no law's: single readings, numbers of a file. `sites` are all places for it, given what
-/// findings, nominal numbers and zeros change of each datum.
+/// no law's: single readings, numbers of a file, errors that wander. `sites` are all places for it,
+/// given what findings, nominal numbers and zeros change of each datum.
 pub fn propose(
     model: &dyn ForwardModel,
     diagnosis: &Diagnosis,
     sites: &dyn Fn(&DVector<f64>) -> Vec<Site>,
 ) -> Option<Proposed> {
     let left = diagnosis.discrepancy.as_ref()?;
-    if matches!(left.shown_by, ShownBy::Suspects | ShownBy::Numbers) {
+    if matches!(left.shown_by, ShownBy::Suspects | ShownBy::Numbers | ShownBy::Neighbours) {
         return None;
     }
     // a curve draws what any law would

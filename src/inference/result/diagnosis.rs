@@ -100,6 +100,8 @@ pub enum ShownBy {
     Repeats,
     /// So many data are far off that they are no single ones.
     Suspects,
+    /// Most of what is left goes on from datum to datum for longer than scatter does.
+    Neighbours,
     /// It is more than the noise that was stated.
     StatedNoise,
     /// It is more than any scatter of such a recording.

@@ -306,6 +306,28 @@ fn pose_plan(found: &CalibrationDiagnosis, plan: &PosePlan) -> Value {
     })
 }
 
+/// How much of what is left wanders, and over how many poses, or how long.
+fn wandering(found: &CalibrationDiagnosis) -> String {
+    let words = "An unexplained error wanders: poses that follow one another are off together";
+    let Some(noise) = found.evidence.correlated_noise else { return words.to_owned() };
+    let times = found.evidence.covariate(Variable::Time).map(|time| &time.values[..]).unwrap_or_default();
+    let (first, last) = times.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &time| {
+        // the smaller and the larger of two numbers are never NaN
+        (a.min(time), b.max(time))
+    });
+    let minutes =
+        (last - first) / (found.model.campaign.measurements.len().max(2) - 1) as f64 / 60.0 * noise.length;
+    let or_minutes = match minutes > 0.0 && minutes.is_finite() {
+        true => format!(" ({} min)", significant(minutes, 2)),
+        false => String::new(),
+    };
+    format!(
+        "{words}, over about {} poses{or_minutes}, with {} % of the variance of what is left",
+        significant(noise.length, 2),
+        significant(100.0 * noise.share, 2)
+    )
+}
+
 /// What is structured and no effect explains, if anything is.
 fn remainder(found: &CalibrationDiagnosis) -> Option<Remainder> {
     let left = found.diagnosis.discrepancy.as_ref()?;
@@ -325,6 +347,7 @@ fn remainder(found: &CalibrationDiagnosis) -> Option<Remainder> {
             );
             ("all poses".to_owned(), words)
         }
+        (ShownBy::Neighbours, _) => ("poses that follow one another".to_owned(), wandering(found)),
         _ => (location, words),
     };
     let rows = found.model.by_row(&left.shape);

@@ -17,6 +17,8 @@ const MORE_THAN_STATED: f64 = 1.5;
 /// share of the error without any finding: that confirms hardly more than that something is there.
 const MUCH_WORSE: f64 = 2.0;
 const HARDLY_BETTER: f64 = 0.5;
+/// Correlation of neighbours in a run from which on it is said.
+const RESEMBLING: f64 = 0.3;
 /// So many rivals are said at once.
 pub const RIVALS_SAID: usize = 2;
 
@@ -44,7 +46,7 @@ fn answer(subject: &Subject) -> String {
         return match remains {
             Some(remains) => format!("{remains}{nominal} {}", capital(scatter(subject))),
             None => format!(
-                "{}: {}the residual, {} µm{}, is {}.{}",
+                "{}: {}the residual, {} µm{}, is {}.{}{}",
                 subject.agrees,
                 match nominal.trim() {
                     "" => String::new(),
@@ -53,7 +55,8 @@ fn answer(subject: &Subject) -> String {
                 um(diagnosis.error_of_others()),
                 subject.per,
                 scatter_of(subject),
-                zeros(diagnosis).unwrap_or_default()
+                zeros(diagnosis).unwrap_or_default(),
+                of_neighbours(subject).unwrap_or_default()
             ),
         };
     }
@@ -138,6 +141,31 @@ fn zeros(diagnosis: &Diagnosis) -> Option<String> {
          Look for what moves between runs.",
         um(own * ratio.sqrt()),
         um(own)
+    ))
+}
+
+/// Errors that neighbours have in common, too few or over too short a time to be something that
+/// moves.
+fn of_neighbours(subject: &Subject) -> Option<String> {
+    let correlation = subject.diagnosis.settled.0.correlation.filter(|own| *own >= RESEMBLING);
+    if let Some(correlation) = correlation {
+        return Some(format!(
+            " {} of a run that follow one another resemble each other (correlation {}): look for what changes \
+             within some of them, as a draught or the temperature does.",
+            capital(subject.noun),
+            significant(correlation, 2)
+        ));
+    }
+    let in_common = |limit: &Limitation| match limit {
+        Limitation::CorrelatedPoses(share, length) => Some((*share, *length)),
+        _ => None,
+    };
+    let (share, length) = subject.limits.iter().find_map(in_common)?;
+    Some(format!(
+        " {} % of its variance is common to {} that follow one another, over about {} of them.",
+        significant(100.0 * share, 2),
+        subject.noun,
+        significant(length, 2)
     ))
 }
 

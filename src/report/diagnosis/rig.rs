@@ -289,7 +289,7 @@ fn of_conditions(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
         ShownBy::Size => "The readings differ from the model by more than such readings scatter, in a \
              shape that neither a smooth curve nor an effect of the library describes"
             .to_owned(),
-        ShownBy::Repeats | ShownBy::Curve | ShownBy::Varying | ShownBy::Numbers => "Averages of repeated readings differ from the model by more \
+        ShownBy::Repeats | ShownBy::Curve | ShownBy::Varying | ShownBy::Numbers | ShownBy::Neighbours => "Averages of repeated readings differ from the model by more \
              than their scatter, in a shape that neither a smooth curve nor an effect of the library describes"
             .to_owned(),
     };

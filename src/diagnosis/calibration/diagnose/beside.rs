@@ -56,6 +56,7 @@ impl Loads {
             | Law::Rod(_)
             | Law::Drift(..)
             | Law::Warms(..)
+            | Law::Bends(_)
             | Law::Moved(_) => None,
         };
         let others: Vec<Term> = terms.iter().filter(|term| mass(term).is_none()).cloned().collect();

@@ -1,4 +1,5 @@
-//! What gives way under the weight of the arm: drives, links, and the base below them.
+//! What gives way under the weight of the arm: drives, and the base below them; links in
+//! `bending.rs`.
 //!
 //! Where a robot's masses are unknown its torques are a sum over its links, τⱼ = Σ_k m_k·zⱼ·((p_k −
 //! oⱼ) × g), and the compliance has one parameter for every frame beyond the joint: c·m_k·g, rad
@@ -16,12 +17,12 @@ use crate::calibration::campaign::Campaign;
 use crate::inference::{
     Effect, Finding, JointVariable, Kind, Location, NotTestable, Parameter, Part, Reported, WrittenTo,
 };
-use crate::robot::{self, TorquePower, across};
+use crate::robot::{self, TorquePower};
 use crate::units::capital;
 
 /// Angle by which a joint or a link deflects under its largest torque beyond what is modelled, rad:
 /// a tenth to a half of what industrial drives deflect by altogether (0.5 mrad).
-const DEFLECTION: f64 = 200e-6;
+pub(super) const DEFLECTION: f64 = 200e-6;
 /// Torque relative to the robot's largest below which a joint counts as unloaded.
 const NO_TORQUE: f64 = 1e-3;
 /// Distance below which frames are at one point and weights have no lever, m.
@@ -146,6 +147,7 @@ fn compliance_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Hung(_)
         | Law::Drift(..)
         | Law::Warms(..)
+        | Law::Bends(_)
         | Law::Moved(_) => {
             let by = first(finding);
             let word = if by.value >= 0.0 { "more" } else { "less" };
@@ -235,6 +237,7 @@ fn nonlinear_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Hung(_)
         | Law::Drift(..)
         | Law::Warms(..)
+        | Law::Bends(_)
         | Law::Moved(_) => ("µrad/(N·m)²", "the square of"),
     };
     format!(
@@ -251,70 +254,6 @@ fn write_nonlinear(finding: &Finding, model: &CalibrationModel, extended: &mut C
     let (power, coefficient) = (*power, first_value(finding));
     extended.robot.effects.push(robot::Effect::NonlinearStiffness { joint, power, coefficient });
     WrittenTo::Model
-}
-
-/// A link that bends across its joint's axis.
-pub static LINK_FLEXIBILITY: CalibrationEffect = CalibrationEffect {
-    effect: Effect {
-        name: "link_flexibility",
-        kind: Kind::Physics,
-        summary: "a link bends",
-        formula: "(k·M⊥) × (tip − oⱼ): M⊥ is the moment of all beyond the joint, without what acts \
-                  about its axis",
-        prior: "200 µrad at the largest moment, as joint_compliance",
-        parameters: &[(&["bending_urad_per_nm"], "angle per moment")],
-        needs: "masses in the robot file, and a joint that they load",
-        cause: "the flexibility of the link",
-        cause_at: |location| format!("bending of the link before {location}"),
-        written_to: WrittenTo::Model,
-        reported: Reported::Alone,
-        seen_along: |location| along(location, JointVariable::Torque),
-        direct_check: None,
-    },
-    candidates: links,
-    estimates: own_parameters,
-    observed: |finding, model| {
-        let known = |joint: usize| bending_in_file(&model.campaign.robot.effects, joint);
-        let known = finding.location.joint().map_or(0.0, known);
-        let (place, by, unit) = (&finding.location, first(finding), "µrad/(N·m)");
-        let plain =
-            || format!("The link before {place} bends by {} under the moment there", by.with_unit(unit));
-        on_top(&format!("The bending of the link before {place}"), by, unit, known).unwrap_or_else(plain)
-    },
-    write: write_link,
-    transfer: Transfer::Candidate,
-    event: no_event,
-};
-
-/// k, rad/(N·m).
-fn bending_in_file(effects: &[robot::Effect], own: usize) -> f64 {
-    in_file(effects, |effect| match effect {
-        robot::Effect::LinkFlexibility { joint, per_nm } if *joint == own => Some(*per_nm),
-        _ => None,
-    })
-}
-
-fn write_link(finding: &Finding, _: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {
-    let Some(joint) = finding.location.joint() else { return WrittenTo::Nowhere };
-    extended.robot.effects.push(robot::Effect::LinkFlexibility { joint, per_nm: first_value(finding) });
-    WrittenTo::Model
-}
-
-fn links(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
-    let loaded = loaded(context);
-    if loaded.is_empty() {
-        lacks.push(lack(&LINK_FLEXIBILITY, NO_MASSES));
-    }
-    loaded.into_iter().filter_map(|(j, _)| link(context, j)).collect()
-}
-
-fn link(context: &Context, j: usize) -> Option<Entry> {
-    let bent = |there: &Configuration| across(&there.moment[j], &there.axis[j]);
-    let largest = context.largest(|there| bent(there).norm());
-    let column = context.column(|_, there| bent(there).cross(&(there.tip - there.origin[j])));
-    let size = DEFLECTION / largest.max(f64::MIN_POSITIVE);
-    let bending = at_least(-bending_in_file(context.effects, j), linear("bending_urad_per_nm", size));
-    (largest > 0.0).then(|| single(&LINK_FLEXIBILITY, joint(j), bending, column))
 }
 
 /// A base that tilts under the arm.

@@ -114,6 +114,7 @@ fn rod_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Hung(_)
         | Law::Drift(..)
         | Law::Warms(..)
+        | Law::Bends(_)
         | Law::Moved(_) => None,
     };
     let under = under.map_or_else(String::new, |under| format!(" {under}"));

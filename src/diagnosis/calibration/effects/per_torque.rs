@@ -24,6 +24,7 @@ pub(super) fn per_torque(model: &CalibrationModel, parts: &[FindingPart]) -> Vec
             | Law::Hung(_)
             | Law::Drift(..)
             | Law::Warms(..)
+            | Law::Bends(_)
             | Law::Moved(_) => 1.0,
         };
         let relative = known.of(part.location.joint());

@@ -89,6 +89,7 @@ fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Hung(_)
         | Law::Drift(..)
         | Law::Warms(..)
+        | Law::Bends(_)
         | Law::Moved(_) => (TakenUp::ByTorque, "taken up on the side that its load pulls to"),
     };
     let known = |joint: usize| play_in_file(&model.campaign.robot.effects, joint, taken_up);

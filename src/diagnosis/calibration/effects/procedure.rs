@@ -267,6 +267,7 @@ fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::MassesUnknown(_)
         | Law::Rod(_)
         | Law::Hung(_)
+        | Law::Bends(_)
         | Law::Moved(_) => {
             format!("Drift by {} at {}", size.with_unit("µm"), finding.location)
         }

@@ -1,13 +1,14 @@
 //! The list of all effects of a calibration: the only source of their names.
 
 use super::super::model::law::{Law, TakenUp};
+use super::bending::LINK_FLEXIBILITY;
 use super::contact::{CONTACT_FORCE_VARIATION, CONTACT_SPRING};
 use super::device::SENSOR_SCALE;
 use super::encoders::{ENCODER_SCALE, WRIST_COUPLING};
 use super::events::{JOINT_SHIFT, OUTLIER};
 use super::fixture::{CLAMP_POSE, CLAMP_SHIFT, SOCKET_SHIFT};
 use super::gear::TRANSMISSION_ERROR;
-use super::joints::{GRAVITY_TILT, JOINT_COMPLIANCE, JOINT_NONLINEAR_STIFFNESS, LINK_FLEXIBILITY};
+use super::joints::{GRAVITY_TILT, JOINT_COMPLIANCE, JOINT_NONLINEAR_STIFFNESS};
 use super::loads::{GRAVITY_DIRECTION, PAYLOAD_MASS, ROD_MASS, ROD_STIFFNESS, TIP_MASS};
 use super::mounting::{BASE_SHIFT, TOOL_SHIFT};
 use super::play::{BACKLASH, JOINT_FRICTION};

@@ -25,6 +25,8 @@ pub struct Configuration {
     pub torque: Vec<f64>,
     /// Their moment about the point on the axis, N·m.
     pub moment: Vec<Vector3<f64>>,
+    /// Force of all loads beyond a joint, N.
+    pub force: Vec<Vector3<f64>>,
     /// First moment of all masses beyond a joint about the point on its axis, kg·m: what g × has to
     /// be multiplied by for their moment.
     pub first_moment: Vec<Vector3<f64>>,
@@ -133,6 +135,7 @@ pub fn all(
                 origin: kinematics.joints.iter().map(|joint| joint.origin).collect(),
                 torque,
                 moment: at_axes(&kinematics, &pulls, Pull::moment_about),
+                force: pulls.iter().map(|pull| pull.force).collect(),
                 first_moment: at_axes(&kinematics, &pulls, Pull::first_moment_about),
                 base_moment: base_moment.unwrap_or_default(),
                 compliance: compliance.to_vec(),

@@ -23,6 +23,9 @@ pub enum Law {
     /// Compliance of a joint whose loads nobody knows: one parameter for every frame beyond it
     /// where a weight may sit, by its joint; `None` is the flange.
     MassesUnknown(Vec<Option<usize>>),
+    /// A link that bends about a point of its joint's axis, so far along it from the joint's
+    /// origin, m.
+    Bends(f64),
     /// A rod of another stiffness.
     Rod(RodLoad),
     /// A mass that nobody stated, or a rod of another one: what it does to the joints depends on
@@ -118,6 +121,7 @@ impl Law {
             | Law::Hung(_)
             | Law::Drift(..)
             | Law::Warms(..)
+            | Law::Bends(_)
             | Law::Moved(_) => None,
         }
     }
@@ -139,6 +143,7 @@ impl Law {
             | Law::Hung(_)
             | Law::Drift(..)
             | Law::Warms(..)
+            | Law::Bends(_)
             | Law::Moved(_) => self,
         }
     }

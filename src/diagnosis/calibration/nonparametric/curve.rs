@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
-use super::super::model::entry::{Column, Entry};
+use super::super::model::Context;
+use super::super::model::entry::{Column, Entry, linear};
+use super::super::model::law::Frame;
 use crate::inference::{JointVariable, Location, Parameter, UNKNOWN, Variable};
 use crate::units::UM;
 
@@ -13,6 +15,8 @@ pub(super) const MOST: usize = 6;
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 /// Size of a turn, rad: as large at 1 m.
 pub(super) const TURN: f64 = 100e-6;
+/// Largest torque below which a joint is not loaded, N·m.
+pub(super) const LEAST_TORQUE: f64 = 0.1;
 /// Lines through the middle of a cube: of its faces, edges and corners. None is farther than 27°
 /// from any other line.
 pub(super) const SIDES: [[f64; 3]; 13] = [
@@ -58,4 +62,23 @@ pub(super) fn scaled(values: &[f64]) -> Option<Vec<f64>> {
 /// cos(π·k·x).
 pub(super) fn cosine(k: usize, x: f64) -> f64 {
     (PI * k as f64 * x).cos()
+}
+
+/// A vector in {W} or in {T} times a weight for each row.
+pub(super) fn vectors(
+    context: &Context,
+    name: &str,
+    size: f64,
+    frame: Frame,
+    weight: &dyn Fn(usize) -> f64,
+) -> Vec<(Parameter, Column)> {
+    let along = |(axis, letter): (usize, &&str)| {
+        let pattern = match frame {
+            Frame::Tool => &context.patterns.tool[axis],
+            Frame::World => &context.patterns.world[axis],
+        };
+        let column = context.along(pattern, |row, _| weight(row));
+        (linear(format!("{letter}_{name}_um"), size), column)
+    };
+    AXES.iter().enumerate().map(along).collect()
 }

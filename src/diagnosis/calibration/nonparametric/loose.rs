@@ -4,6 +4,8 @@
 //! ```text
 //! a tool that is loose        a·e·sign(e·g)       e a direction in {T}, scanned: it rests on the side to
 //!                                                 which gravity g presses it
+//! one that sticks             a·s                 a a vector in {T}; s the side to which e·g has last
+//!                                                 exceeded a share of g, which is scanned
 //! a bearing that runs out     a·sin(nθ) + b·cos(nθ), n = 1 and 2, of all beyond a joint
 //!                             along its axis, or, n = 2, across it, or about lines across it
 //! a worn tooth                a·s·½·(1 + cos(π·(θ − θ₀)/w)) within w of θ₀, which are scanned; s is the
@@ -18,23 +20,31 @@ use std::f64::consts::PI;
 use nalgebra::Vector3;
 
 use super::super::model::entry::{Column, Entry, linear};
+use super::super::model::law::Frame;
 use super::super::model::{Configuration, Context};
-use super::curve::{SIDES, SIZE, TURN, angle_of, curve};
+use super::curve::{SIDES, SIZE, TURN, angle_of, curve, vectors};
 use crate::inference::Parameter;
 use crate::units::DEG;
 
+/// Shares of its weight by which a tool is pressed before it slips.
+const STUCK: [f64; 3] = [0.25, 0.5, 0.75];
 /// Half of the range over which a tooth may be worn, rad.
 const WIDTHS: [f64; 3] = [20.0 * DEG, 35.0 * DEG, 60.0 * DEG];
 
 /// All that is no joint's reversal; those of each kind have the prior of one curve together.
 pub(super) fn all(context: &Context) -> Vec<Entry> {
     let mut tools: Vec<Entry> = SIDES.iter().map(|side| tool(context, side)).collect();
+    let mut sticking: Vec<Entry> = (STUCK.iter())
+        .flat_map(|&share| SIDES.iter().map(move |side| (share, side)))
+        .map(|(share, side)| stuck(context, share, side))
+        .collect();
     let joints = context.revolute();
     let mut bearings: Vec<Entry> = joints.into_iter().flat_map(|joint| bearing(context, joint)).collect();
-    for of_kind in [&mut tools, &mut bearings] {
+    for of_kind in [&mut tools, &mut sticking, &mut bearings] {
         let share = 1.0 / of_kind.len().max(1) as f64;
         of_kind.iter_mut().for_each(|entry| entry.candidate.weight = share);
     }
+    tools.extend(sticking);
     tools.extend(bearings);
     tools
 }
@@ -50,6 +60,28 @@ fn tool(context: &Context, side: &[f64; 3]) -> Entry {
     let follows = format!("follows to which side gravity presses the tool, along {along} of {{T}}");
     let parameter = (linear("clearance_um", SIZE), column);
     curve(format!("orientation, loose along {along} of the tool"), follows, None, vec![parameter])
+}
+
+/// A tool that friction holds until gravity presses it to the other side by a share of its weight.
+fn stuck(context: &Context, share: f64, side: &[f64; 3]) -> Entry {
+    let direction = Vector3::from(*side).normalize();
+    let mut last = 0.0;
+    let sides: Vec<f64> = (context.configurations.iter())
+        .map(|there| {
+            let down = there.gravity.try_normalize(0.0).unwrap_or_default();
+            let pressed = (there.flange.rotation * direction).dot(&down);
+            if pressed.abs() > share {
+                last = pressed.signum();
+            }
+            last
+        })
+        .collect();
+    let along = named(side);
+    let follows = format!(
+        "follows to which side gravity last pressed the tool, along {along} of {{T}}, by more than {share} of its weight"
+    );
+    let label = format!("orientation, stuck along {along} of the tool, beyond {share} of its weight");
+    curve(label, follows, None, vectors(context, "stuck", SIZE, Frame::Tool, &|row| sides[row]))
 }
 
 /// `x`, `x + y`, `x − z`.

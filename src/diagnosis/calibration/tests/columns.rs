@@ -200,25 +200,37 @@ fn a_link_bends_about_its_joint_and_clamps_move_the_other_way() {
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
     let compensation = Compensation::new(&campaign, Mode::Fea).unwrap();
     let (model, _) = CalibrationModel::new(&campaign, calibration.clone()).unwrap();
-    let index = find(&model, "link_flexibility", "joint 3");
-    let mut term = model.candidates()[index].neutral(index);
-    term.values[0] = 1e-7;
-    let predicted = model.response(&[term]);
-    for at in [0, 17, 40] {
+    // the forearm at the elbow, and at the wrist, where a URDF may have its joint
+    let of_link = |joint: usize, is_at_wrist: bool| {
+        let is_it = |c: &Candidate| {
+            let place = c.location.to_string();
+            c.effect.name == "link_flexibility"
+                && c.location.joint() == Some(joint)
+                && place.ends_with(" mm along its axis") == is_at_wrist
+        };
+        model.candidates().iter().position(is_it).unwrap()
+    };
+    for (joint, is_at_wrist, at) in [2, 3].into_iter().flat_map(|j| [0, 17, 40].map(|at| (j, j == 3, at))) {
+        let index = of_link(joint, is_at_wrist);
+        let mut term = model.candidates()[index].neutral(index);
+        term.values[0] = 1e-7;
+        let predicted = model.response(&[term]);
         let there = row(&campaign, &calibration, &compensation, at);
         let mut kinematics = Kinematics::new(&there.setup);
         kinematics.update(&there.q, &there.torque());
         // the moment, force by force
-        let origin = kinematics.joints[2].origin;
+        let (own, next) = (&kinematics.joints[joint], &kinematics.joints[joint + 1]);
+        let along = if is_at_wrist { own.axis.dot(&(next.origin - own.origin)) } else { 0.0 };
+        let origin = own.origin + own.axis * along;
         let mut moment = (kinematics.tip - origin).cross(&there.loads.tip_force);
         let rod = there.loads.payload.unwrap();
         moment += (kinematics.flange.point(&rod.centre) - origin).cross(&(there.loads.gravity * rod.mass));
-        for j in 2..6 {
+        for j in joint..6 {
             let Some(body) = campaign.robot.joints[j].body else { continue };
             let centre = kinematics.joints[j].distal.point(&body.centre);
             moment += (centre - origin).cross(&(there.loads.gravity * body.mass));
         }
-        let axis = kinematics.joints[2].axis;
+        let axis = kinematics.joints[joint].axis;
         let turn = Rotation3::new((moment - axis * axis.dot(&moment)) * 1e-7);
         let tip = there.tip();
         let expected = turn * (tip - origin) + origin - tip;

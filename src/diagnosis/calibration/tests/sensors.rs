@@ -190,3 +190,23 @@ fn cross_talk_of_one_clamp_is_named_with_its_axes() {
     let observed = &findings[0].description.observed;
     assert!(observed.contains("along x also shows") && observed.contains("along y"), "{observed}");
 }
+
+/// A guide of one clamp that is worn: what is shown along x has a curve of the displacement along
+/// z, which is no place of the clamp and no scatter of its own.
+#[test]
+fn a_curve_of_one_clamp_across_its_axes_is_seen() {
+    let campaign = clamps(30);
+    let groups = &campaign.measurements.groups;
+    let is_there = |row: usize| groups[campaign.measurements.rows[row].group].name.to_string() == "clamp 2";
+    let Targets::Points(points) = &campaign.measurements.targets else { panic!("no points") };
+    let by = |row: usize| {
+        let device = campaign.measurements.device(row);
+        let along: Vector3<f64> = device.rotation.column(0).into();
+        let shown = device.inverse().point(&points[row]).z.abs();
+        if is_there(row) { along * (0.6 * shown) } else { Vector3::zeros() }
+    };
+    let (findings, left) = diagnosed(&recorded(&campaign, &by, NOISE, 21));
+    let names: Vec<&str> = findings.iter().map(|finding| finding.effect.name).collect();
+    let place = "displacement along z at clamp 2, a curve along x".to_owned();
+    assert_eq!((names, left), (vec![], Some(place)));
+}

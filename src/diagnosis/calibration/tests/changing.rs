@@ -1,0 +1,91 @@
+//! What changes while the poses are recorded, and what is remembered: not what is like it, and not
+//! nothing.
+
+use super::*;
+use crate::calibration::campaign::Recording;
+use crate::inference::ShownBy;
+
+/// Names of what is found, what shows that something is left, and along what.
+fn diagnosed(campaign: &Campaign, mode: Mode) -> (Vec<&'static str>, Option<ShownBy>, String) {
+    let found = diagnose_as_recorded(campaign, mode, &Options::default()).unwrap();
+    let names = found.diagnosis.findings.iter().map(|finding| finding.effect.name).collect();
+    let left = found.diagnosis.discrepancy;
+    let place = left.as_ref().and_then(|left| left.location.as_ref()).map(ToString::to_string);
+    (names, left.map(|left| left.shown_by), place.unwrap_or_default())
+}
+
+/// Half of the variance over ten poses is something that moves; errors of a laboratory, of a
+/// correlation of 0.6, are none.
+#[test]
+fn a_base_that_wanders_is_unexplained_and_the_noise_of_a_laboratory_is_not() {
+    let campaign = clamps(24);
+    let with = |length: f64, share: f64| {
+        let (mut random, carried) = (Random::seeded(4, 9), (-1.0 / length).exp());
+        let mut normal = || Vector3::from_fn(|_, _| random.normal());
+        let mut slow = normal();
+        let errors: Vec<Vector3<f64>> = (0..campaign.measurements.len())
+            .map(|_| {
+                slow = slow * carried + normal() * (1.0 - carried * carried).sqrt();
+                slow * share.sqrt() + normal() * (1.0 - share).sqrt()
+            })
+            .collect();
+        diagnosed(&recorded(&campaign, &|row| errors[row] * (30.0 * UM), 0.0, 0), Mode::Fea)
+    };
+    assert_eq!(with(10.0, 0.7), (vec![], Some(ShownBy::Neighbours), String::new()));
+    assert_eq!(with(2.0, 1.0), (vec![], None, String::new()));
+}
+
+/// A drive that gets softer from pose to pose is no link that grows and no base that drifts.
+#[test]
+fn a_drive_that_softens_is_said_to_follow_its_torque() {
+    let campaign = clamps(16);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let rows = campaign.measurements.len() as f64;
+    let by = |row: usize| {
+        let there = &context.configurations[row];
+        there.tip_jacobian[1] * (1.5e-6 * there.torque[1] * (row as f64 / rows - 0.5))
+    };
+    let (names, _, place) = diagnosed(&recorded(&campaign, &by, 20.0 * UM, 8), Mode::Fea);
+    assert!(names.is_empty() && place.ends_with(" × torque of joint 2"), "{names:?} {place}");
+}
+
+/// A tool that slips when gravity presses it by half of its weight, and stays there.
+#[test]
+fn a_tool_that_sticks_follows_what_it_was_last_pressed_to() {
+    let campaign = clamps(24);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let mut side = 0.0;
+    let displaced: Vec<Vector3<f64>> = (context.configurations.iter())
+        .map(|there| {
+            let pressed = there.flange.rotation.column(1).dot(&there.gravity.normalize());
+            if pressed.abs() > 0.5 {
+                side = pressed.signum();
+            }
+            there.flange.rotation * Vector3::new(0.3, 1.0, 0.0) * (60.0 * UM * side)
+        })
+        .collect();
+    let (names, _, place) = diagnosed(&recorded(&campaign, &|row| displaced[row], 20.0 * UM, 9), Mode::Fea);
+    assert_eq!(names, Vec::<&str>::new());
+    assert_eq!(place, "orientation, stuck along y of the tool, beyond 0.5 of its weight");
+}
+
+/// A tracker whose scale changes is neither an arm that grows nor a base or a tool that moved.
+#[test]
+fn a_tracker_of_another_scale_from_a_row_on_is_no_move() {
+    let robot = Robot::from_text("tx90.toml", ROBOT, None, None).unwrap();
+    let tool = Vector3::new(0.06, 0.01, 0.12);
+    let mut random = Random::seeded(12, 0);
+    let mut recording = Recording::new(6);
+    for row in 0..100 {
+        let q: Vec<f64> = (0..6).map(|_| random.uniform(-1.7, 1.7)).collect();
+        let tip = robot.flange_at(&q).point(&tool);
+        let noise = Vector3::from_fn(|_, _| 15.0 * UM * random.normal());
+        let scale = if row < 62 { 0.0 } else { 8e-5 };
+        recording.add(&q, tip * (1.0 + scale) + noise).unwrap();
+    }
+    let campaign = Campaign::new(robot, recording).unwrap().with_tool(tool);
+    let (names, _, place) = diagnosed(&campaign, Mode::None);
+    assert!(names.is_empty() && place == "distance from the tracker, after pose 62", "{names:?} {place}");
+}

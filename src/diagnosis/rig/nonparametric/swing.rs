@@ -206,7 +206,7 @@ mod tests {
         assert_eq!(levels(Vec::new()), 0);
         // four levels each way, read with a scatter, are too few to see anything that repeats
         let row = |i: usize| {
-            let (sign, level) = (if i / 4 % 2 == 0 { "" } else { "-" }, 1 + i % 4);
+            let (sign, level) = (if (i / 4).is_multiple_of(2) { "" } else { "-" }, 1 + i % 4);
             format!("{sign}y,{}.0{},{},0\n", 5 * level, i % 7, 228 * level)
         };
         let text = "axis,load_n,dy_um,dz_um\n".to_owned() + &(0..48).map(row).collect::<String>();

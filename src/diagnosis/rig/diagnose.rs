@@ -162,10 +162,9 @@ pub fn diagnose_with(
         another_rod::add_rivals(&others, &model, &mut diagnosis);
         bent = Some(found);
     }
-    let read = if mended.has_data { &mended.readings } else { readings };
-    let files = if mended.has_data { mended.rod.as_ref() } else { rod };
-    let one_law = match mended.found.is_empty() {
-        true => one_law::instead(read, (files, bent.as_ref().or(files)), &diagnosis)?,
+    // what a lab describes itself it has named
+    let one_law = match mended.found.is_empty() && own.is_empty() {
+        true => one_law::instead(readings, (rod, bent.as_ref().or(rod)), &diagnosis)?,
         false => None,
     };
     let (one_law, names) = match one_law {

@@ -2,9 +2,9 @@
 //!
 //! A root that gives way by M^0.6 is a compliant root, an offset of the load and a stiffness that
 //! depends on it, together: each is there for what the others do not draw. Where three names or
-//! more are needed, or one beside a curve, a law is looked for in their place. It is the answer
+//! more are needed, or two beside a curve, a law is looked for in their place. It is the answer
 //! where it needs fewer numbers, leaves as little, and predicts readings that were held out as well
-//! as the names do.
+//! as the names do. One name beside a curve is a cause that is known, if not by its very law.
 
 use crate::diagnosis::Limitation;
 use crate::diagnosis::rig::laws::sites;
@@ -16,7 +16,7 @@ use crate::inference::{Diagnosis, Evidence, Finding, Kind, ShownBy, diagnose};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
 
-/// So many names are many.
+/// So many names, a curve counted as one, are many.
 const MANY: usize = 3;
 /// A curve has more numbers than these.
 const OF_CURVE: usize = 2;
@@ -47,7 +47,7 @@ pub(super) fn instead(
     let physics: Vec<&Finding> =
         named.findings.iter().filter(|finding| finding.kind() == Kind::Physics).collect();
     let has_curve = named.discrepancy.as_ref().is_some_and(|left| left.shown_by == ShownBy::Curve);
-    let are_many = physics.len() >= MANY || (has_curve && !physics.is_empty());
+    let are_many = physics.len() + usize::from(has_curve) >= MANY;
     if !are_many || physics.len() < named.findings.len() {
         return Ok(None);
     }

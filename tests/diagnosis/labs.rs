@@ -220,6 +220,17 @@ fn of_rod(text: &str) -> Answer {
     Answer::of(Some(ROD), text)
 }
 
+/// The rod that needs more load for its displacement is the stiffer one.
+#[test]
+fn a_stiffer_rod_is_said_to_be_stiffer_where_the_displacement_is_imposed() {
+    for (youngs, word) in [("195.0", "above"), ("205.0", "below")] {
+        let file = ROD.replace("200.0", youngs);
+        let answer = Answer::of(Some(&file), &imposed(0, false, 0.0, 0.0));
+        let headline = answer.json["headline"].as_str().unwrap();
+        assert!(headline.contains(&format!("% {word} that of the rod file")), "{youngs}: {headline}");
+    }
+}
+
 /// Of `texts` all are consistent: not one of these few may be named.
 fn assert_silent(texts: impl Iterator<Item = String>, what: &str) {
     for (seed, text) in texts.enumerate() {

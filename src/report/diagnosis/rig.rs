@@ -132,8 +132,8 @@ fn nominal(found: &RigDiagnosis) -> Option<String> {
     if unexplained > NOT_OF_THE_ROD * rms(&predicted) {
         return None;
     }
-    // share of the deflections that the numbers add, and its gradient to their factors; of an imposed
-    // displacement it is the load that they add to, and a stiffer rod needs more
+    // share of the deflections that the numbers add, and its gradient to their factors; of an
+    // imposed displacement it is the load that they add to, and a stiffer rod needs more
     let sign = |datum: &Datum| if datum.imposed.is_some() { -1.0 } else { 1.0 };
     let deflected = found.model.data().iter().map(|datum| sign(datum) * datum.predicted);
     let deflected = DVector::from_iterator(found.model.data().len(), deflected);

@@ -12,7 +12,7 @@ use crate::inference::held_out::{Theme, hold_out};
 use crate::inference::locate::{Structure, along, locate};
 use crate::inference::model::evidence::rms;
 use crate::inference::noise::in_common::wandering;
-use crate::inference::noise::scatter::{NoiseTest, Tails};
+use crate::inference::noise::scatter::{NoiseTest, Tails, in_spread};
 use crate::inference::noise::suspects::are_many;
 use crate::inference::search::Search;
 use crate::inference::search::findings::findings;
@@ -75,7 +75,8 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     };
     let mut diagnosis = diagnose_with(model, &Evidence { stated_noise: None, ..evidence.clone() });
     let degrees_of_freedom = evidence.residual.len() as f64 - diagnosis.taken;
-    diagnosis.noise_test = noise_test(Some(stated), diagnosis.noise, degrees_of_freedom.max(1.0));
+    diagnosis.noise_test =
+        noise_test(Some(stated), of_all(evidence) * diagnosis.noise, degrees_of_freedom.max(1.0));
     if diagnosis.discrepancy.is_none() && diagnosis.noise_test.is_contradicted() {
         let left = diagnosis.after.clone();
         diagnosis.discrepancy = Some(Discrepancy::without_curve(ShownBy::StatedNoise, left));
@@ -120,19 +121,20 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     let degrees_of_freedom = (search.degrees_of_freedom() as f64 - longest.determined).max(1.0);
     let weighted: f64 = left.iter().zip(&evidence.weight).map(|(r, w)| w * r * r).sum();
     let noise = (weighted / degrees_of_freedom).sqrt();
-    let residual = search.plain_residual(longest);
+    let residual = in_spread(evidence, &search.plain_residual(longest));
     let suspects = match evidence.is_robust {
         true => Tails::of(&residual, evidence.rounding()).suspects(&residual),
         false => Vec::new(),
     };
-    let noise_test = noise_test(evidence.stated_noise, longest.sigma, degrees_of_freedom);
+    let noise_test = noise_test(evidence.stated_noise, of_all(evidence) * longest.sigma, degrees_of_freedom);
     let is_contradicted = noise_test.is_contradicted();
     // repeats that scatter as much show that it is scatter, up to a point
     let times = if lack_of_fit_after.is_some() { SHOWN_BY_REPEATS } else { 1.0 };
     // zeros that were not taken scatter as far as they like: readings within a run do not
     let ratio = search.shared_ratio();
     let own = if ratio > ZEROS_APART * ZEROS_APART { noise / (1.0 + ratio).sqrt() } else { noise };
-    let is_too_much = evidence.most_scatter.is_some_and(|most| own > times * most);
+    let worst = evidence.spread.iter().fold(0.0, |most: f64, own| most.max(*own));
+    let is_too_much = evidence.most_scatter.is_some_and(|most| worst * own > times * most);
     let are_many = are_many(evidence, &suspects);
     // of what hangs together, and only of that: what else is left has been looked for
     let wanders = evidence.correlated_noise.is_some() && wandering(evidence, &left).is_some();
@@ -230,6 +232,15 @@ fn given_others(
         Some(along(covariate, &left, index as u64))
     };
     evidence.covariates.iter().enumerate().map(of_index).collect()
+}
+
+/// Noise of all data over the usual one, as far as one number stands for all: what is stated without
+/// more is stated of each of them.
+fn of_all(evidence: &Evidence) -> f64 {
+    match evidence.is_spread_stated || evidence.stated_noise.is_none() {
+        true => 1.0,
+        false => rms(&DVector::from_column_slice(&evidence.spread)),
+    }
 }
 
 /// χ² of what is left against the noise that was stated.

@@ -23,6 +23,7 @@ use crate::inference::columns::linearised::Linearised;
 use crate::inference::columns::part_products::Training;
 use crate::inference::columns::table::Table;
 use crate::inference::noise::lack_of_fit::{LackOfFit, Replicates};
+use crate::inference::noise::scatter::in_spread;
 use crate::inference::noise::whitening::Whitening;
 use crate::inference::score::ColumnBlock;
 use crate::inference::score::priors::priors;
@@ -124,6 +125,7 @@ impl<'a> Search<'a> {
             return false;
         }
         let response = self.model.response(std::slice::from_ref(term));
+        let response = in_spread(self.evidence, &response);
         let concerned = response.iter().filter(|change| **change != 0.0).count();
         let rms = response.norm() / (concerned.max(1) as f64).sqrt();
         rms < MISTAKEN * sigma * (1.0 + self.whitening.ratio).sqrt()

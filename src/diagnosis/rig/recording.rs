@@ -6,3 +6,4 @@ pub mod columns;
 pub mod datum;
 pub mod evidence;
 mod rezeroed;
+pub mod spread;

@@ -5,6 +5,7 @@ mod files;
 mod load;
 mod named;
 mod reading;
+mod scatter;
 mod structure;
 
 use approx::assert_relative_eq;

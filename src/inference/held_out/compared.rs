@@ -48,12 +48,7 @@ impl Compared {
 }
 
 fn plain(evidence: &Evidence) -> Evidence {
-    Evidence {
-        is_robust: false,
-        weight: vec![1.0; evidence.residual.len()],
-        information: 1.0,
-        ..evidence.clone()
-    }
+    Evidence { is_robust: false, weight: evidence.even_weight(), information: 1.0, ..evidence.clone() }
 }
 
 struct Best {

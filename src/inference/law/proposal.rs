@@ -52,11 +52,8 @@ pub fn propose(
     let evidence = &match left.shown_by == ShownBy::Curve || !settled.is_robust {
         true => settled.as_ref().clone(),
         false => {
-            let even = Evidence {
-                weight: vec![1.0; settled.residual.len()],
-                information: 1.0,
-                ..settled.as_ref().clone()
-            };
+            let even =
+                Evidence { weight: settled.even_weight(), information: 1.0, ..settled.as_ref().clone() };
             reweighted(model, &even, terms, &all, (size, sigma)).unwrap_or(even)
         }
     };
@@ -141,6 +138,6 @@ fn reweighted(
     let best = found.laws.first()?;
     let columns = best.choice.columns(&sites[best.choice.site], best.at, size);
     let left = &even.residual - remainder.fit(&columns.columns).predicted;
-    let (weight, information) = weighted(&remainder.without_shared(&left), even.rounding());
+    let (weight, information) = weighted(even, &remainder.without_shared(&left));
     Some(Evidence { weight, information, ..even.clone() })
 }

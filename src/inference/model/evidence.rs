@@ -40,7 +40,12 @@ pub struct Evidence {
     pub most_scatter: Option<f64>,
     /// True where single data may be far off: weights are found, and such data are remarks.
     pub is_robust: bool,
-    /// How much each datum counts; all of them 1 unless tails are heavy.
+    /// Standard deviation of each datum's own noise over the usual one: 1 of all but those of a
+    /// sensor that is known to be better or worse than the others.
+    pub spread: Vec<f64>,
+    /// True where somebody stated that too; else a stated noise is that of every datum.
+    pub is_spread_stated: bool,
+    /// How much each datum counts: 1/spread², and less where tails are heavy.
     pub weight: Vec<f64>,
     /// Variance of the errors that data share, over that of their own; `None` where it is to be
     /// found out.
@@ -107,6 +112,8 @@ impl Evidence {
             stated_noise: None,
             most_scatter: None,
             is_robust: false,
+            spread: vec![1.0; count],
+            is_spread_stated: false,
             weight: vec![1.0; count],
             shared_ratio: None,
             correlation: None,
@@ -123,6 +130,11 @@ impl Evidence {
             resolution: 0.0,
             covariates: Vec::new(),
         }
+    }
+
+    /// How much each datum counts where no tails are heavy: 1/spread².
+    pub fn even_weight(&self) -> Vec<f64> {
+        self.spread.iter().map(|own| own.powi(-2)).collect()
     }
 
     /// Numbers of the folds, ascending.
@@ -150,6 +162,8 @@ impl Evidence {
             stated_noise: self.stated_noise,
             most_scatter: self.most_scatter,
             is_robust: self.is_robust,
+            spread: rows.iter().map(|&row| self.spread[row]).collect(),
+            is_spread_stated: self.is_spread_stated,
             weight: rows.iter().map(|&row| self.weight[row]).collect(),
             shared_ratio: self.shared_ratio,
             correlation: self.correlation,

@@ -31,7 +31,7 @@ const FEWEST: usize = 20;
 /// a datum: r repeats leave (r − 1)/r of it. Nothing for what was not repeated, or hardly counts:
 /// what is far off says nothing of the others.
 pub fn deviations(evidence: &Evidence, left: &DVector<f64>) -> Vec<Option<f64>> {
-    let counts = |row: usize| evidence.weight[row] > HARDLY;
+    let counts = |row: usize| evidence.weight[row] * evidence.spread[row].powi(2) > HARDLY;
     let mut replicates: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
     for (row, &group) in evidence.replicate_group.iter().enumerate().filter(|(row, _)| counts(*row)) {
         let (sum, count) = replicates.entry(group).or_default();

@@ -12,6 +12,7 @@
 
 use nalgebra::DVector;
 
+use crate::inference::Evidence;
 use crate::inference::model::evidence::rms;
 use crate::statistics::ln_gamma;
 
@@ -143,9 +144,22 @@ impl Tails {
     }
 }
 
-/// How much each datum counts, and what it then says over what a normal one does. A few data far
-/// off beside normal ones are no heavy tails: they hardly count, and the others all alike.
-pub fn weighted(residual: &DVector<f64>, rounding: f64) -> (Vec<f64>, f64) {
+/// How much each datum of an evidence counts that leaves `residual`, and what it then says over what
+/// a normal one does.
+pub fn weighted(evidence: &Evidence, residual: &DVector<f64>) -> (Vec<f64>, f64) {
+    let (weights, information) = weighted_alike(&in_spread(evidence, residual), evidence.rounding());
+    let spread = weights.iter().zip(&evidence.spread);
+    (spread.map(|(weight, spread)| weight / spread.powi(2)).collect(), information)
+}
+
+/// Residuals as if all data had the usual noise.
+pub fn in_spread(evidence: &Evidence, residual: &DVector<f64>) -> DVector<f64> {
+    DVector::from_iterator(residual.len(), residual.iter().zip(&evidence.spread).map(|(r, s)| r / s))
+}
+
+/// Of data whose noise is alike. A few data far off beside normal ones are no heavy tails: they
+/// hardly count, and the others all alike.
+fn weighted_alike(residual: &DVector<f64>, rounding: f64) -> (Vec<f64>, f64) {
     let tails = Tails::of(residual, rounding);
     if tails.freedom.is_infinite() {
         return (vec![1.0; residual.len()], 1.0);
@@ -211,7 +225,7 @@ mod tests {
         let tails = Tails::of(&noise(&[]), 0.0);
         assert!(tails.freedom.is_infinite() && (tails.scale - 1.0).abs() < 0.1, "{tails:?}");
         assert!(tails.suspects(&noise(&[])).is_empty());
-        assert!(weighted(&noise(&[]), 0.0) == (vec![1.0; 200], 1.0));
+        assert!(weighted_alike(&noise(&[]), 0.0) == (vec![1.0; 200], 1.0));
     }
 
     #[test]
@@ -248,7 +262,7 @@ mod tests {
         let tails = Tails::of(&with, 0.0);
         let suspects = tails.suspects(&with);
         assert_eq!(suspects.iter().map(|s| s.datum).collect::<Vec<_>>(), [7, 90]);
-        let (weights, information) = weighted(&with, 0.0);
+        let (weights, information) = weighted_alike(&with, 0.0);
         assert!(weights[7] < 0.02 && weights[8] == 1.0 && information == 1.0, "{:?}", weights[7]);
         assert!((tails.scale - 1.0).abs() < 0.15, "{tails:?}");
     }

@@ -39,7 +39,8 @@ pub fn unlike_repeats(evidence: &Evidence) -> BTreeSet<usize> {
     }
     let mut deviations: Vec<(usize, f64)> = Vec::new();
     for data in repeats.into_values().filter(|data| data.len() >= FEWEST) {
-        let values: Vec<f64> = data.iter().map(|&datum| evidence.residual[datum]).collect();
+        let values: Vec<f64> =
+            data.iter().map(|&datum| evidence.residual[datum] / evidence.spread[datum]).collect();
         let Some(middle) = median(&values) else { continue };
         deviations.extend(data.iter().zip(values).map(|(&datum, value)| (datum, value - middle)));
     }
@@ -91,7 +92,7 @@ impl Search<'_> {
             }
             off.push(farthest);
             let mut column = DVector::zeros(self.evidence.residual.len());
-            column[farthest] = USUAL * hypothesis.sigma;
+            column[farthest] = USUAL * hypothesis.sigma * self.evidence.spread[farthest];
             columns.push(self.whitening.apply(&column));
             let (log_probability, rest_left) =
                 self.with_columns(&rest, &linear, &DMatrix::from_columns(&columns));

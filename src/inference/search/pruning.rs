@@ -58,12 +58,12 @@ pub fn settled(model: &Linearised<'_>, evidence: &Evidence) -> (Evidence, Option
         };
         let residual = search.plain_residual(longest);
         let (mut weight, information) = match evidence.is_robust {
-            true => weighted(&residual, evidence.rounding()),
+            true => weighted(&evidence, &residual),
             false => (evidence.weight.clone(), 1.0),
         };
         if evidence.is_robust {
             // what was found far off stays so while it is
-            off.retain(|&datum| residual[datum].abs() > SUSPECT * longest.sigma);
+            off.retain(|&datum| residual[datum].abs() > SUSPECT * longest.sigma * evidence.spread[datum]);
             off.extend(search.misread(longest));
             off.iter().for_each(|&datum| weight[datum] = OFF);
         }

@@ -108,6 +108,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
         before_correction: model.recorded.map(|recorded| recorded.rms / 3.0f64.sqrt()),
         doubtful: doubtful(found),
         nominal: far_from_file(found),
+        uneven: None,
         suspect: Box::new(|datum| {
             let row = &campaign.measurements.rows[datum / 3];
             json!({ "pose": row.pose, "channel": AXES[datum % 3] })

@@ -30,6 +30,10 @@ pub fn headline(subject: &Subject) -> String {
         true => format!("{} {}", Limitation::NotConverged, answer(subject)),
         false => answer(subject),
     };
+    let words = match &subject.uneven {
+        Some(uneven) => format!("{words} {}", uneven.words),
+        None => words,
+    };
     match &subject.doubtful {
         Some(doubtful) => format!("{doubtful} {words}"),
         None => words,
@@ -103,8 +107,13 @@ fn scatter_of(subject: &Subject) -> String {
         1 => " without the suspect reading".to_owned(),
         count => format!(" without {count} suspect {}", subject.noun),
     };
+    let is_uneven = subject.uneven.is_some();
     match (test.stated, &subject.diagnosis.lack_of_fit_after) {
+        (Some(stated), _) if is_uneven => {
+            format!("noise of the sensors (most of them {noise}{without}; stated: {} µm)", um(stated))
+        }
         (Some(stated), _) => format!("noise ({noise}{without}; stated: {} µm)", um(stated)),
+        (None, Some(_)) if is_uneven => format!("as large as the repeats of each sensor scatter{without}"),
         (None, Some(_)) => format!("as large as the scatter of the repeats ({noise}){without}"),
         (None, None) => "unexplained scatter (nothing was repeated)".to_owned(),
     }

@@ -85,6 +85,9 @@ pub fn json(subject: &Subject) -> Value {
         "n": subject.count,
         "warnings": subject.all_warnings(),
     });
+    if let Some(uneven) = &subject.uneven {
+        main["noise"]["sensors"] = uneven.sensors.clone();
+    }
     if let Some(noise) = subject.evidence.correlated_noise {
         main["noise"]["correlated"] = json!({ "share": noise.share, "length_poses": noise.length });
     }

@@ -3,6 +3,7 @@
 mod correction;
 mod figures;
 mod lines;
+mod scatter;
 
 use nalgebra::DVector;
 use serde_json::{Value, json};
@@ -68,6 +69,7 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
         // units of the rod file's keys are among the mistakes
         doubtful: None,
         nominal: nominal(found),
+        uneven: scatter::uneven(found),
         suspect: Box::new(|datum| {
             let datum = &model.data()[datum];
             json!({ "row": datum.row, "channel": format!("d{}", datum.channel) })

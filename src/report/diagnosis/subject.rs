@@ -40,6 +40,8 @@ pub struct Subject<'a> {
     pub doubtful: Option<String>,
     /// What the nominal numbers explain, in a sentence.
     pub nominal: Option<String>,
+    /// Sensors that scatter otherwise than the others do.
+    pub uneven: Option<Uneven>,
     /// A suspect datum as JSON: its row or pose, its channel.
     pub suspect: Box<dyn Fn(usize) -> Value + 'a>,
     /// What no effect explains.
@@ -85,6 +87,14 @@ impl Subject<'_> {
         let limits = self.limits.iter().map(ToString::to_string);
         self.warnings.iter().cloned().chain(limits).collect()
     }
+}
+
+/// Sensors that scatter otherwise than the others do.
+pub struct Uneven {
+    /// In a sentence.
+    pub words: String,
+    /// As JSON, one object for each.
+    pub sensors: Value,
 }
 
 /// What was made of the remainder.

@@ -30,6 +30,9 @@ pub struct Course {
     pub hung: Vec<Vec<Vec<usize>>>,
     /// Imposed displacements of one sensor in one run, in their order.
     pub imposed: Vec<Vec<usize>>,
+    /// Each datum that was read beside an imposed displacement, and the datum of that one: the
+    /// largest of its instant.
+    pub beside: Vec<(usize, usize)>,
 }
 
 impl Course {
@@ -41,6 +44,13 @@ impl Course {
             for sensor in 0..sensors.iter().max().map_or(0, |last| last + 1) {
                 let of_sensor = imposed.iter().zip(&sensors).filter(|(_, own)| **own == sensor);
                 course.imposed.push(of_sensor.map(|(&i, _)| i).collect());
+            }
+            for instant in instants(data, &run) {
+                let size = |i: usize| data[i].imposed.map(|imposed| imposed.displacement.abs());
+                let sized = instant.iter().filter_map(|&i| Some((i, size(i)?)));
+                let Some((largest, _)) = sized.max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
+                let others = instant.iter().filter(|&&i| data[i].imposed.is_none());
+                course.beside.extend(others.map(|&i| (i, largest)));
             }
             if imposed.is_empty() && run.iter().any(|&i| data[i].motion.is_some()) {
                 course.hung.push(instants(data, &run));

@@ -20,6 +20,7 @@
 //! ```
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use nalgebra::{Rotation3, Unit, Vector3};
@@ -176,6 +177,23 @@ impl<'a> State<'a> {
             }
         }
         pulls
+    }
+
+    /// What a load along the positive axis of a datum's load is directed to.
+    pub fn along(&self, datum: &Datum) -> Vector3<f64> {
+        self.load_direction[datum.direction.axis.index()]
+    }
+
+    /// Beside an imposed displacement the rod is bent by what its friction leaves of the measured
+    /// load, F + f₀ − f·z.
+    pub fn pull_beside(&self, pulls: &mut [Pull], data: &[Datum], course: &Course, met: &[(usize, Met)]) {
+        let met: HashMap<usize, Met> = met.iter().copied().collect();
+        for &(i, imposed) in &course.beside {
+            let (datum, met) = (&data[i], met[&imposed]);
+            let friction = self.friction.on(datum) * met.contact * met.friction;
+            let force = datum.signed_load() + self.load_offset.on(datum) - friction;
+            pulls[i] = self.pull(i, datum, Some(Hung { force, side: 0.0 }));
+        }
     }
 
     /// Adds what a lab's own effects do to readings, m.

@@ -50,7 +50,7 @@ pub(super) fn found(data: &[Datum]) -> Vec<Part> {
             (0..trials.len()).filter(|&o| protocols[o] == protocols[t] && same[o] != same[t]).take(COMPARED);
         let scatters: Vec<f64> = others.flat_map(|other| scatters(data, own, trials[other])).collect();
         let scatter = median(&scatters).unwrap_or(0.0);
-        let step = resolution(&own.iter().map(|&i| data[i].clone()).collect::<Vec<_>>());
+        let step = resolution(own.iter().map(|&i| &data[i]));
         let moving = own.iter().filter(|&&i| data[i].measured != 0.0).count();
         if scatter <= STEPS * step {
             continue;

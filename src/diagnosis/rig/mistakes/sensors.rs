@@ -322,7 +322,7 @@ fn is_no_tie(same: usize, step: f64, tremor: f64) -> bool {
 
 /// The smallest step of the display of the channel of which `own` are the data, m.
 fn step_of(data: &[Datum], own: &[usize]) -> f64 {
-    resolution(&own.iter().map(|&i| data[i].clone()).collect::<Vec<_>>())
+    resolution(own.iter().map(|&i| &data[i]))
 }
 
 /// True where lines that `at` is hardly a part of say that its readings are the same within

@@ -115,7 +115,7 @@ impl RigModel {
             _ => bent.clone(),
         });
         let large = bent.as_ref().map(|bent| model.large_deflections(bent)).transpose()?;
-        let mut evidence = evidence::of_data(&model.data, nuisance, large);
+        let mut evidence = evidence::of_data(&model.data, &readings.header, nuisance, large);
         evidence.stated_noise = model.stated_noise();
         if let Some(rod) = rod {
             let stations = |rod: &Rod, d: &Datum| {

@@ -114,24 +114,25 @@ impl RigModel {
             softening.joints.extend(joints.map(|&(_, joint, by)| (joint, by)));
             of_session[session] = Some(structure.softened(&softening));
         }
-        let pulls = state.pulls(&self.data, &self.course);
+        let mut pulls = state.pulls(&self.data, &self.course);
         let compliance = |i: usize| {
             let own = of_session.get(self.data[i].session_number).and_then(Option::as_ref);
             own.unwrap_or(&common)[self.place[i]]
         };
+        // what a sensor along the load shows per newton
+        let along = |i: usize| {
+            let datum = &self.data[i];
+            state.read(datum.channel, &(compliance(i) * state.along(datum)))
+        };
+        let met = state.met(&self.data, &self.course, self.step, &along);
+        state.pull_beside(&mut pulls, &self.data, &self.course, &met);
         let reading = |(i, datum): (usize, &Datum)| {
             let pull = &pulls[i];
             let bent = compliance(i) * (pull.direction * pull.load);
             state.read(datum.channel, &(bent + pull.direction * pull.play))
         };
         let mut readings: Vec<f64> = self.data.iter().enumerate().map(reading).collect();
-        // what a sensor along the load shows per newton
-        let along = |i: usize| {
-            let datum = &self.data[i];
-            let direction = pulls[i].direction * f64::from(datum.direction.sign);
-            state.read(datum.channel, &(compliance(i) * direction))
-        };
-        for (i, met) in state.met(&self.data, &self.course, self.step, &along) {
+        for (i, met) in met {
             let (datum, along) = (&self.data[i], along(i));
             let per_newton = datum.imposed.map_or(along, |imposed| imposed.per_newton);
             readings[i] = match along == 0.0 {
@@ -159,12 +160,6 @@ impl RigModel {
                 }
             }
             Body::Lines(count) => {
-                let pulls = state.pulls(&self.data, &self.course);
-                let mut felt: Vec<f64> = Vec::with_capacity(self.data.len());
-                for (i, (datum, pull)) in self.data.iter().zip(&pulls).enumerate() {
-                    felt.push(pull.load * f64::from(datum.direction.sign));
-                    change[i] += pull.direction[datum.channel.index()] * pull.play;
-                }
                 // of an imposed displacement a line is the load per displacement: c₀ the compliance
                 // that its unit is
                 let unit = |i: usize| self.data[i].imposed.map_or(1.0, |imposed| imposed.per_newton);
@@ -173,7 +168,15 @@ impl RigModel {
                 let stiffness = self.slopes(*count, &drives, &measured);
                 let compliance =
                     |i: usize| unit(i) / stiffness[self.place[i]].abs().max(f64::MIN_POSITIVE.sqrt());
-                for (i, met) in state.met(&self.data, &self.course, self.step, &compliance) {
+                let met = state.met(&self.data, &self.course, self.step, &compliance);
+                let mut pulls = state.pulls(&self.data, &self.course);
+                state.pull_beside(&mut pulls, &self.data, &self.course, &met);
+                let mut felt: Vec<f64> = Vec::with_capacity(self.data.len());
+                for (i, (datum, pull)) in self.data.iter().zip(&pulls).enumerate() {
+                    felt.push(pull.load * f64::from(datum.direction.sign));
+                    change[i] += pull.direction[datum.channel.index()] * pull.play;
+                }
+                for (i, met) in met {
                     let datum = &self.data[i];
                     let load = state.measured_load(i, datum, &met, unit(i));
                     let besides = state.measured_load(i, datum, &met.unbent(), unit(i));

@@ -4,8 +4,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::datum::Datum;
+use super::spread;
 use crate::diagnosis::rig::numbering::numbered;
 use crate::inference::{Covariate, Evidence, Variable};
+use crate::rig::readings::RigHeader;
 use crate::spatial::Axis;
 use crate::units::UM;
 
@@ -22,7 +24,13 @@ const SCATTER: f64 = 0.03;
 const STEPS_OF_DISPLAY: f64 = 2.0;
 
 /// The evidence of `data`, whose predictions are made.
-pub fn of_data(data: &[Datum], nuisance: DMatrix<f64>, large: Option<DVector<f64>>) -> Evidence {
+pub fn of_data(
+    data: &[Datum],
+    header: &RigHeader,
+    nuisance: DMatrix<f64>,
+    large: Option<DVector<f64>>,
+) -> Evidence {
+    let spread = spread::spread(data, header);
     let residual = DVector::from_iterator(data.len(), data.iter().map(|d| d.measured - d.predicted));
     let (offsets, least_offset) = zeros(data);
     Evidence {
@@ -42,6 +50,9 @@ pub fn of_data(data: &[Datum], nuisance: DMatrix<f64>, large: Option<DVector<f64
         instant: numbered(data.iter().map(|d| d.row)),
         session: sessions(data),
         fold: folds(data),
+        weight: spread.iter().map(|own| own.powi(-2)).collect(),
+        is_spread_stated: header.noise.is_some() && header.load_noise.is_some(),
+        spread,
         resolution: resolution(data),
         covariates: covariates(data),
         ..Evidence::new(residual)
@@ -135,7 +146,7 @@ fn levels(data: &[Datum]) -> Vec<usize> {
 
 /// The step that all offsets are multiples of, m: 10, 5, 2, 1, 0.5 µm and so on; 0 where they show
 /// none.
-pub fn resolution(data: &[Datum]) -> f64 {
+pub fn resolution<'a>(data: impl IntoIterator<Item = &'a Datum>) -> f64 {
     const COARSEST: i32 = 1;
     const FINEST: i32 = -6;
     /// The file's decimals are not exact in binary, and the more steps the less so.
@@ -148,6 +159,7 @@ pub fn resolution(data: &[Datum]) -> f64 {
         let mantissas: &[f64] = if decade == COARSEST { &[1.0] } else { &[5.0, 2.0, 1.0] };
         mantissas.iter().map(move |mantissa| mantissa * 10f64.powi(decade))
     });
+    let data: Vec<&Datum> = data.into_iter().collect();
     let mut steps = steps.filter(|&step| data.iter().all(|d| is_multiple(d, step)));
     steps.next().map_or(0.0, |step| step * UM)
 }
@@ -191,7 +203,7 @@ mod tests {
 
     fn evidence(text: &str) -> Evidence {
         let data = datum::all(&Readings::from_text("f", text).unwrap().rows);
-        of_data(&data, DMatrix::zeros(data.len(), 0), None)
+        of_data(&data, &RigHeader::default(), DMatrix::zeros(data.len(), 0), None)
     }
 
     fn trials(count: usize) -> String {

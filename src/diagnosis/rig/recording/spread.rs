@@ -1,0 +1,278 @@
+//! How much each sensor scatters, beside the others: one that is far worse has a noise of its own.
+//!
+//! What repeats is no noise, and neither is what is smooth, so that the scatter of a sensor is the
+//! smaller of two, each without a model. Readings yⱼ of two runs one after the other, under the
+//! same loads, differ by dⱼ; and of one way through the loads x each reading has neighbours on both
+//! sides of it:
+//!
+//! ```text
+//! e = (dⱼ₊₁ − dⱼ)/2                                            t = (xⱼ − xⱼ₋₁)/(xⱼ₊₁ − xⱼ₋₁)
+//! e = (yⱼ − (1 − t)·yⱼ₋₁ − t·yⱼ₊₁)/√(1 + (1 − t)² + t²)
+//! ```
+//!
+//! have the standard deviation of one reading (T. Gasser, L. Sroka, C. Jennen-Steinmetz, Biometrika
+//! 73 (1986) 625–633), which is the upper quartile of their sizes over that of a normal number, a
+//! few far off or not. A sensor that scatters under loads along one axis only does not scatter:
+//! something else does.
+
+use std::collections::BTreeMap;
+
+use super::datum::Datum;
+use super::evidence::resolution;
+use crate::diagnosis::rig::numbering::numbered;
+use crate::rig::readings::{Axis, RigHeader};
+
+/// Fewer such differences say nothing.
+const FEWEST: usize = 20;
+/// Within this factor all sensors scatter alike: what is fitted to them knows of single ones that
+/// are off.
+const ALIKE: f64 = 1.5;
+/// And within so many standard deviations of a quartile of n differences: 0.91/√n, and more for
+/// those that have readings in common.
+const SURE: f64 = 3.0;
+const OF_QUARTILE: f64 = 1.2;
+/// Upper quartile of the size of a normal number.
+const NORMAL: f64 = 1.1503;
+/// Without one axis it scatters less than this share of what it does along all: not the sensor.
+const ALONG_ONE: f64 = 0.5;
+/// No sensor is trusted farther beyond the usual one.
+const SUREST: f64 = 0.1;
+/// A reading is no surer than this share of the step that its display shows.
+const OF_STEP: f64 = 0.5;
+
+/// Noise of each datum over the usual one; 1 of all where none is known to differ. Loads that were
+/// measured are readings of a sensor of their own. What the header states of offsets and loads is
+/// known.
+pub fn spread(data: &[Datum], header: &RigHeader) -> Vec<f64> {
+    if let Some(spread) = stated(data, header) {
+        return spread;
+    }
+    // there is one load cell, and one that is read at each of some stations is one sensor
+    let sensor = numbered(data.iter().map(|d| d.imposed.is_none().then(|| d.sensor())));
+    let channel = numbered(data.iter().map(|d| d.imposed.is_none().then_some(d.channel)));
+    let scatter_of = |numbers: &[usize], number: usize| {
+        scatter(
+            &data.iter().zip(numbers).filter(|(_, own)| **own == number).map(|(d, _)| d).collect::<Vec<_>>(),
+        )
+    };
+    let count = sensor.iter().max().map_or(0, |last| last + 1);
+    let of_sensor = |k: usize| {
+        let first = sensor.iter().position(|number| *number == k)?;
+        scatter_of(&sensor, k).or_else(|| scatter_of(&channel, channel[first]))
+    };
+    let scatters: Vec<Option<Scatter>> = (0..count).map(of_sensor).collect();
+    let Some(usual) = usual(&scatters, &sensor) else { return vec![1.0; data.len()] };
+    let of_number = |number: &usize| scatters[*number].as_ref().map_or(1.0, |scatter| scatter.beside(&usual));
+    sensor.iter().map(of_number).collect()
+}
+
+/// What the header says of both, where both were read: √((c·s_F)² + s²)/s of a load, c what a
+/// newton counts.
+fn stated(data: &[Datum], header: &RigHeader) -> Option<Vec<f64>> {
+    let (noise, load_noise) = (header.noise.filter(|noise| *noise > 0.0)?, header.load_noise?);
+    data.iter().any(|datum| datum.imposed.is_none()).then_some(())?;
+    let of_datum = |datum: &Datum| {
+        datum.imposed.map_or(1.0, |imposed| (imposed.per_newton * load_noise).hypot(noise) / noise)
+    };
+    Some(data.iter().map(of_datum).collect())
+}
+
+/// The scatter of one sensor.
+struct Scatter {
+    /// One standard deviation, m.
+    sigma: f64,
+    /// Differences that it was found from.
+    count: usize,
+}
+
+impl Scatter {
+    /// Over that of another one; 1 where the two may be the same.
+    fn beside(&self, other: &Scatter) -> f64 {
+        let ratio = self.sigma / other.sigma;
+        let chance = SURE * OF_QUARTILE * ((self.count as f64).recip() + (other.count as f64).recip()).sqrt();
+        if ratio.ln().abs() > ALIKE.ln().max(chance) { ratio.max(SUREST) } else { 1.0 }
+    }
+}
+
+/// The scatter of the reading in the middle, were all sorted by that of their sensors; of all
+/// sensors that may have the same, together.
+fn usual(scatters: &[Option<Scatter>], sensor: &[usize]) -> Option<Scatter> {
+    let mut known: Vec<(&Scatter, usize)> = scatters
+        .iter()
+        .enumerate()
+        .filter_map(|(k, own)| Some((own.as_ref()?, sensor.iter().filter(|number| **number == k).count())))
+        .collect();
+    known.sort_by(|a, b| a.0.sigma.total_cmp(&b.0.sigma));
+    let all: usize = known.iter().map(|(_, count)| count).sum();
+    let mut before = 0;
+    let (middle, _) = *known.iter().find(|(_, count)| {
+        before += count;
+        2 * before >= all
+    })?;
+    let alike: Vec<&Scatter> =
+        known.iter().map(|(own, _)| *own).filter(|own| own.beside(middle) == 1.0).collect();
+    let count: usize = alike.iter().map(|own| own.count).sum();
+    let square: f64 = alike.iter().map(|own| own.count as f64 * own.sigma.powi(2)).sum();
+    Some(Scatter { sigma: (square / count as f64).sqrt(), count })
+}
+
+/// Of the readings of one sensor; `None` of too few.
+fn scatter(own: &[&Datum]) -> Option<Scatter> {
+    let by_axis = Axis::ALL.map(|axis| differences(axis, own));
+    let of_list = |k: usize| {
+        let of_axes = |left_out: Option<usize>| {
+            let axes = (0..by_axis.len()).filter(|axis| Some(*axis) != left_out);
+            quartile(&axes.flat_map(|axis| by_axis[axis][k].iter().copied()).collect::<Vec<f64>>())
+        };
+        let whole = of_axes(None)?;
+        let others = (0..by_axis.len()).filter_map(|axis| of_axes(Some(axis)));
+        let least = others.min_by(|a, b| a.sigma.total_cmp(&b.sigma));
+        Some(least.filter(|least| least.beside(&whole) < ALONG_ONE).unwrap_or(whole))
+    };
+    let found = (0..2).filter_map(of_list).min_by(|a, b| a.sigma.total_cmp(&b.sigma))?;
+    let sigma = found.sigma.max(OF_STEP * resolution(own.iter().copied()));
+    (sigma > 0.0).then_some(Scatter { sigma, ..found })
+}
+
+fn quartile(differences: &[f64]) -> Option<Scatter> {
+    let count = differences.len();
+    (count >= FEWEST).then_some(())?;
+    let mut sizes: Vec<f64> = differences.iter().map(|own| own.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    Some(Scatter { sigma: sizes[3 * count / 4] / NORMAL, count })
+}
+
+/// Of the readings under loads along an axis: about their neighbours, and from run to run.
+fn differences(axis: Axis, own: &[&Datum]) -> [Vec<f64>; 2] {
+    let mut ways: BTreeMap<_, Vec<&Datum>> = BTreeMap::new();
+    for datum in own.iter().filter(|datum| datum.direction.axis == axis) {
+        // there and back are two ways: of loads or displacements of either sign, that one of the motion
+        let is_back = datum.motion.map_or(datum.is_unloading(), |motion| motion.direction < 0.0);
+        ways.entry((datum.stations(), is_back, datum.run)).or_default().push(datum);
+    }
+    for way in ways.values_mut() {
+        way.sort_by(|a, b| a.drive().total_cmp(&b.drive()).then(a.order.cmp(&b.order)));
+    }
+    let smooth = ways.values().flat_map(|way| way.windows(3).map(of_neighbours)).collect();
+    let mut repeats = Vec::new();
+    let ways: Vec<(_, &Vec<&Datum>)> = ways.iter().collect();
+    for pair in ways.windows(2) {
+        let ((one, before), (other, after)) = (&pair[0], &pair[1]);
+        if (one.0, one.1) == (other.0, other.1) {
+            repeats.extend(of_repeats(before, after));
+        }
+    }
+    [smooth, repeats]
+}
+
+/// What a reading is off the line through its neighbours.
+fn of_neighbours(three: &[&Datum]) -> f64 {
+    let [x, y] = [Datum::drive, |datum: &Datum| datum.measured]
+        .map(|value: fn(&Datum) -> f64| [value(three[0]), value(three[1]), value(three[2])]);
+    let t = if x[2] > x[0] { (x[1] - x[0]) / (x[2] - x[0]) } else { 0.5 };
+    (y[1] - (1.0 - t) * y[0] - t * y[2]) / (1.0 + (1.0 - t).powi(2) + t * t).sqrt()
+}
+
+/// What two runs through the same loads differ by, from load to load.
+fn of_repeats(before: &[&Datum], after: &[&Datum]) -> Vec<f64> {
+    let mut rest = after.iter().peekable();
+    let mut differences = Vec::new();
+    for one in before {
+        while rest.peek().is_some_and(|other| other.drive() < one.drive()) {
+            rest.next();
+        }
+        if let Some(other) = rest.next_if(|other| other.drive() == one.drive()) {
+            differences.push(other.measured - one.measured);
+        }
+    }
+    differences.windows(2).map(|pair| 0.5 * (pair[1] - pair[0])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::rig::recording::datum;
+    use crate::rig::readings::Readings;
+    use crate::statistics::Random;
+
+    /// A reading of a channel under a load (N) along an axis, in a trial.
+    struct Read {
+        trial: usize,
+        axis: usize,
+        channel: usize,
+        load: f64,
+    }
+
+    /// By channel, of five trials along x, y and z: the first reading's. `noise` and `shape` are in
+    /// µm.
+    fn spread_of(noise: impl Fn(&Read) -> f64, shape: impl Fn(&Read) -> f64) -> [f64; 3] {
+        let mut random = Random::seeded(5, 0);
+        let mut text = "trial,axis,load_n,phase,dx_um,dy_um,dz_um\n".to_owned();
+        for (trial, axis) in (0..5).flat_map(|trial| (0..3).map(move |axis| (trial, axis))) {
+            for (load, phase) in
+                [(2, "load"), (4, "load"), (6, "load"), (8, "load"), (4, "unload"), (2, "unload")]
+            {
+                text += &format!("{trial},{},{load},{phase}", Axis::ALL[axis]);
+                for channel in 0..3 {
+                    let read = Read { trial, axis, channel, load: f64::from(load) };
+                    text += &format!(",{:.2}", shape(&read) + noise(&read) * random.normal());
+                }
+                text += "\n";
+            }
+        }
+        spread_in(&text)
+    }
+
+    fn spread_in(text: &str) -> [f64; 3] {
+        let readings = Readings::from_text("f", text).unwrap();
+        let data = datum::recorded(&readings);
+        let spread = spread(&data, &readings.header);
+        Axis::ALL.map(|axis| spread[data.iter().position(|d| d.channel == axis).unwrap()])
+    }
+
+    #[test]
+    fn one_sensor_that_is_worse_has_a_noise_of_its_own() {
+        let worse = |times: f64| move |read: &Read| if read.channel == 2 { times } else { 1.0 };
+        let of_rod = |read: &Read| if read.channel == read.axis { 40.0 * read.load } else { 0.0 };
+        assert_eq!(spread_of(worse(1.0), of_rod), [1.0; 3]);
+        let [x, y, z] = spread_of(worse(6.0), of_rod);
+        assert!(x == 1.0 && y == 1.0 && (4.5..8.0).contains(&z), "{z}");
+    }
+
+    #[test]
+    fn what_repeats_is_no_noise_and_neither_is_what_one_axis_makes() {
+        let even = |_: &Read| 1.0;
+        // bent as no line is, the same in all trials
+        let bent = |read: &Read| if read.channel == 2 { 60.0 * (1.3 * read.load).sin() } else { 0.0 };
+        assert_eq!(spread_of(even, bent), [1.0; 3]);
+        // each run with a zero and a slope of its own
+        let drifting = |read: &Read| {
+            let run = (3 * read.trial + read.axis) as f64;
+            if read.channel == 2 { (40.0 + 5.0 * read.load) * (2.0 * run).sin() } else { 0.0 }
+        };
+        assert_eq!(spread_of(even, drifting), [1.0; 3]);
+        // a rod that rattles along z is no sensor that does
+        let rattles = |read: &Read| if read.channel == 2 && read.axis == 2 { 9.0 } else { 1.0 };
+        assert_eq!(spread_of(rattles, |_| 0.0), [1.0; 3]);
+    }
+
+    #[test]
+    fn a_load_cell_is_a_sensor_and_what_is_stated_of_both_is_known() {
+        let mut random = Random::seeded(6, 0);
+        let mut rows = String::new();
+        for _ in 0..4 {
+            for k in [1, 2, 3, 4, 3, 2, 1] {
+                let (u, load) = (100.0 * f64::from(k), 2.0 * f64::from(k) + 0.1 * random.normal());
+                let [x, y, z] = [0.0, 0.0, u].map(|at| at + 0.5 * random.normal());
+                rows += &format!("z,{load:.3},{x:.2},{y:.2},{z:.2}\n");
+            }
+        }
+        let text =
+            |noise: &str| format!("# driven = displacement\n{noise}axis,load_n,dx_um,dy_um,dz_um\n{rows}");
+        // 0.1 N of 50 µm/N, against 0.5 µm
+        let [x, y, loads] = spread_in(&text(""));
+        assert!(x == 1.0 && y == 1.0 && (7.0..13.0).contains(&loads), "{loads}");
+        let [x, _, loads] = spread_in(&text("# noise_um = 2\n# noise_n = 0.03\n"));
+        assert!(x == 1.0 && (loads - 1.25).abs() < 0.02, "{loads}");
+    }
+}

@@ -133,8 +133,10 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
     // zeros that were not taken scatter as far as they like: readings within a run do not
     let ratio = search.shared_ratio();
     let own = if ratio > ZEROS_APART * ZEROS_APART { noise / (1.0 + ratio).sqrt() } else { noise };
+    // and so does what a sensor scatters from reading to reading, whatever the model is
     let worst = evidence.spread.iter().fold(0.0, |most: f64, own| most.max(*own));
-    let is_too_much = evidence.most_scatter.is_some_and(|most| worst * own > times * most);
+    let is_more = |most: f64| own > times * most || worst * own > SHOWN_BY_REPEATS * times * most;
+    let is_too_much = evidence.most_scatter.is_some_and(is_more);
     let are_many = are_many(evidence, &suspects);
     // of what hangs together, and only of that: what else is left has been looked for
     let wanders = evidence.correlated_noise.is_some() && wandering(evidence, &left).is_some();
@@ -234,8 +236,8 @@ fn given_others(
     evidence.covariates.iter().enumerate().map(of_index).collect()
 }
 
-/// Noise of all data over the usual one, as far as one number stands for all: what is stated without
-/// more is stated of each of them.
+/// Noise of all data over the usual one, as far as one number stands for all: what is stated
+/// without more is stated of each of them.
 fn of_all(evidence: &Evidence) -> f64 {
     match evidence.is_spread_stated || evidence.stated_noise.is_none() {
         true => 1.0,

@@ -211,7 +211,7 @@ fn kind(random: &mut Random) -> Kind {
 /// One to three readings of different rows that are far off.
 fn misread(bench: &Bench, noise: &Noise, random: &mut Random) -> Vec<Effect> {
     let cells = bench.protocol.cells();
-    let sd = noise.variance(bench.protocol.quantum).sqrt();
+    let sd = |cell: usize| noise.channel_variance(cells[cell].channel, bench.protocol.quantum).sqrt();
     let mut chosen: Vec<usize> = Vec::new();
     for _ in 0..1 + random.index(3) {
         let cell = random.index(cells.len());
@@ -221,7 +221,7 @@ fn misread(bench: &Bench, noise: &Noise, random: &mut Random) -> Vec<Effect> {
     }
     let of_cell = |cell: usize| {
         let sign = if happens(random, 0.5) { -1.0 } else { 1.0 };
-        Effect::Outlier(vec![(cell, sign * log_uniform(random, MISREAD[0], MISREAD[1]) * sd)])
+        Effect::Outlier(vec![(cell, sign * log_uniform(random, MISREAD[0], MISREAD[1]) * sd(cell))])
     };
     chosen.into_iter().map(of_cell).collect()
 }
@@ -254,7 +254,11 @@ fn ground_truth(case: String, mut drawn: Drawn, query: &Bench) -> GroundTruth {
     let companions = concealed.split_off(concealed.len() - drawn.companions);
     concealed.sort_by(|a, b| b.size_over_noise.total_cmp(&a.size_over_noise));
     concealed.extend(drawn.mistake.as_ref().map(|mistake| mistaken(&drawn, mistake)));
-    let held_out = variance + noise.zero_variance(protocol.quantum);
+    let of_channel = |channel: usize| {
+        noise.channel_variance(channel, protocol.quantum) + noise.zero_variance(channel, protocol.quantum)
+    };
+    let cells = protocol.cells();
+    let held_out = cells.iter().map(|cell| of_channel(cell.channel)).sum::<f64>() / cells.len().max(1) as f64;
     let has_gain = !effects.is_empty() && !effects.iter().any(Effect::is_of_one_run);
     let left = has_gain.then(|| oracle.mean_square_left(effects));
     GroundTruth {

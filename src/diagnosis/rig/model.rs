@@ -123,8 +123,8 @@ impl RigModel {
         self.data.iter().find_map(|datum| datum.imposed).map(|imposed| imposed.per_newton)
     }
 
-    /// Stated noise of an offset, m; where only loads were read or only their noise is stated, that of
-    /// a load, with that of the displacement.
+    /// Stated noise of an offset, m; where only loads were read or only their noise is stated, that
+    /// of a load, with that of the displacement.
     pub(super) fn stated_noise(&self) -> Option<f64> {
         let header = &self.readings.header;
         let of_load = self.per_newton().zip(header.load_noise).map(|(per_newton, noise)| per_newton * noise);

@@ -10,7 +10,7 @@ use crate::inference::columns::linearised::Linearised;
 use crate::inference::noise::whitening::Whitening;
 use crate::inference::search::Search;
 use crate::inference::search::selection::{DiscrepancyModel, Pairs};
-use crate::inference::{Evidence, ForwardModel};
+use crate::inference::{Diagnosis, Evidence, ForwardModel, Term};
 
 /// The first model with its recording, which others are compared with.
 #[non_exhaustive]
@@ -18,27 +18,31 @@ pub struct Compared {
     /// Of shared and own errors, as the best hypothesis leaves them.
     ratio: f64,
     correlation: f64,
+    /// What goes with the size of offsets that data share, m.
+    noise: f64,
     /// Ln of the probability that the recording then has.
     log_probability: f64,
 }
 
 impl Compared {
-    /// The best hypothesis of a model, what it leaves unexplained included.
-    pub fn new(model: &dyn ForwardModel, evidence: &Evidence) -> Compared {
+    /// The best hypothesis of a model, what it leaves unexplained included: that of its diagnosis, where
+    /// this is the better one.
+    pub fn new(model: &dyn ForwardModel, evidence: &Evidence, found: &Diagnosis) -> Compared {
+        let (known, noise) = (&found.hypothesis.terms, found.noise);
         let own = plain(evidence);
-        let before = best(model, &own);
+        let before = best(model, &own, known, noise);
         // what the best hypothesis leaves is scatter
         let whitening = Whitening::new(&background::folded(&own).evidence, &before.left);
         let (ratio, correlation) = (whitening.ratio, whitening.correlation);
-        let unsettled = Compared { ratio, correlation, log_probability: 0.0 };
-        let log_probability = best(model, &unsettled.alike(own)).log_probability;
+        let unsettled = Compared { ratio, correlation, noise, log_probability: 0.0 };
+        let log_probability = best(model, &unsettled.alike(own), known, noise).log_probability;
         Compared { log_probability, ..unsettled }
     }
 
     /// Ln of how many times more probable the recording is by the best hypothesis of another
     /// model. Both evidences hold the same data.
     pub fn log_odds(&self, other: &dyn ForwardModel, evidence: &Evidence) -> f64 {
-        best(other, &self.alike(plain(evidence))).log_probability - self.log_probability
+        best(other, &self.alike(plain(evidence)), &[], self.noise).log_probability - self.log_probability
     }
 
     /// The same data with errors that scatter alike.
@@ -56,15 +60,23 @@ struct Best {
     left: DVector<f64>,
 }
 
-fn best(model: &dyn ForwardModel, evidence: &Evidence) -> Best {
+fn best(model: &dyn ForwardModel, evidence: &Evidence, known: &[Term], noise: f64) -> Best {
     let model = &Linearised::new(model);
-    let folded = background::folded(evidence);
+    let mut folded = background::folded(evidence);
+    background::size_offsets(&mut folded.evidence, noise);
     let search = Search::new(model, &folded.evidence, &[]);
     let (hypothesis, left_over) = search.best(Pairs::Screened);
-    let longest = match left_over {
+    let mut longest = match left_over {
         Some(DiscrepancyModel::Curve(longer)) => longer,
         _ => hypothesis,
     };
+    // one search without weights may have stopped beside what is known
+    if !known.is_empty() {
+        let fitted = search.fit(known);
+        if fitted.log_probability > longest.log_probability {
+            longest = fitted;
+        }
+    }
     let response = model.response(&longest.terms);
     let left = &folded.evidence.residual - search.predicted(&longest, &folded.evidence, &response);
     Best { log_probability: longest.log_probability, left }

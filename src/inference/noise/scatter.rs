@@ -144,8 +144,8 @@ impl Tails {
     }
 }
 
-/// How much each datum of an evidence counts that leaves `residual`, and what it then says over what
-/// a normal one does.
+/// How much each datum of an evidence counts that leaves `residual`, and what it then says over
+/// what a normal one does.
 pub fn weighted(evidence: &Evidence, residual: &DVector<f64>) -> (Vec<f64>, f64) {
     let (weights, information) = weighted_alike(&in_spread(evidence, residual), evidence.rounding());
     let spread = weights.iter().zip(&evidence.spread);

@@ -117,13 +117,15 @@ fn groups(bench: &Bench, noise: &Noise) -> Vec<(Vec<usize>, DMatrix<f64>)> {
         let zero = if protocol.zeroed_once { 0 } else { run(row) };
         rows.entry((zero, cell.channel)).or_default().push(row);
     }
-    let zero = noise.zero_variance(protocol.quantum);
-    let display = noise.variance(protocol.quantum) - noise.sd * noise.sd;
+    let display = protocol.quantum.powi(2) / 12.0;
     let of_group = |rows: Vec<usize>| {
+        let channel = cells[rows[0]].channel;
+        let zero = noise.zero_variance(channel, protocol.quantum);
+        let variance = (noise.times[channel] * noise.sd).powi(2);
         let lower = DMatrix::from_fn(rows.len(), rows.len(), |i, j| {
             let neighbours = if i == j { 1.0 } else { noise.correlation.powi(i.abs_diff(j) as i32) };
             let is_run = run(rows[i]) == run(rows[j]);
-            let own = if is_run { noise.sd * noise.sd * neighbours } else { 0.0 };
+            let own = if is_run { variance * neighbours } else { 0.0 };
             own + zero + if i == j { display } else { 0.0 }
         });
         Some((rows, lower.cholesky()?.unpack()))
@@ -147,7 +149,7 @@ mod tests {
     fn what_noise_zeros_and_numbers_do_has_unit_scatter() {
         let nominal = bench();
         let ideal = nominal.readings(&[]);
-        let noise = Noise { correlation: 0.4, zero: 1.5, ..Noise::normal(1e-6) };
+        let noise = Noise { correlation: 0.4, zero: 1.5, times: [1.0, 4.0, 1.0], ..Noise::normal(1e-6) };
         let covariance = Covariance::new(&drawn(0, &nominal), &noise);
         let (mut sum, runs) = (0.0, 60);
         for seed in 1..=runs {

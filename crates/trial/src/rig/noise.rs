@@ -3,6 +3,7 @@
 
 use super::bench::Bench;
 use super::protocol::Cell;
+use rodcal_base::spatial::Axis;
 use rodcal_base::statistics::Random;
 
 /// Shape of the noise of one reading.
@@ -31,6 +32,8 @@ pub struct Noise {
     pub correlation: f64,
     /// Standard deviation of the zero of a run and channel over that of a reading.
     pub zero: f64,
+    /// How many times as much the sensor of each channel scatters.
+    pub times: [f64; 3],
 }
 
 /// Draws the noise of one reading after another, in standard deviations.
@@ -68,17 +71,22 @@ impl<'a> Source<'a> {
 impl Noise {
     /// Independent and normal, with zeros that are read like any other reading.
     pub fn normal(sd: f64) -> Noise {
-        Noise { sd, shape: Shape::Normal, correlation: 0.0, zero: 1.0 }
+        Noise { sd, shape: Shape::Normal, correlation: 0.0, zero: 1.0, times: [1.0; 3] }
     }
 
-    /// Variance of one reading with the display's steps, q²/12, m².
+    /// Variance of one reading of most sensors with the display's steps, q²/12, m².
     pub fn variance(&self, quantum: f64) -> f64 {
         self.sd * self.sd + quantum * quantum / 12.0
     }
 
-    /// Variance of a zero, m².
-    pub fn zero_variance(&self, quantum: f64) -> f64 {
-        (self.zero * self.sd).powi(2) + quantum * quantum / 12.0
+    /// The same of a channel.
+    pub fn channel_variance(&self, channel: usize, quantum: f64) -> f64 {
+        (self.times[channel] * self.sd).powi(2) + quantum * quantum / 12.0
+    }
+
+    /// Variance of a zero of a channel, m².
+    pub fn zero_variance(&self, channel: usize, quantum: f64) -> f64 {
+        (self.zero * self.times[channel] * self.sd).powi(2) + quantum * quantum / 12.0
     }
 
     /// For people: `student-t (5), correlated 0.4`.
@@ -88,7 +96,17 @@ impl Noise {
             Shape::StudentT(dof) => format!("student-t ({dof})"),
             Shape::Bootstrap(residuals) => format!("{} residuals of a recording", residuals.len()),
         };
-        if self.correlation > 0.0 { format!("{shape}, correlated {:.2}", self.correlation) } else { shape }
+        let correlated = match self.correlation > 0.0 {
+            true => format!(", correlated {:.2}", self.correlation),
+            false => String::new(),
+        };
+        let worse: Vec<String> = Axis::ALL
+            .into_iter()
+            .zip(self.times)
+            .filter(|(_, times)| *times != 1.0)
+            .map(|(channel, times)| format!(", d{channel} {times:.1} times as much"))
+            .collect();
+        format!("{shape}{correlated}{}", worse.concat())
     }
 
     /// What the display shows: each run's zero of each channel was read once and taken off.
@@ -100,8 +118,9 @@ impl Noise {
         let runs = protocol.loadings.iter().map(|l| l.run + 1).max().unwrap_or(0);
         let zeros: Vec<[f64; 3]> = (0..runs)
             .map(|_| {
-                [0; 3]
-                    .map(|_| self.zero * self.sd * source.draw(random) + random.uniform(-0.5, 0.5) * quantum)
+                self.times.map(|times| {
+                    times * self.zero * self.sd * source.draw(random) + random.uniform(-0.5, 0.5) * quantum
+                })
             })
             .collect();
         // noise of the last reading of each channel, and its run
@@ -114,7 +133,7 @@ impl Noise {
             let (of_run, before) = last[cell.channel];
             let noise = if of_run == run { self.correlation * before + fresh * drawn } else { drawn };
             last[cell.channel] = (run, noise);
-            step(reading + self.sd * noise - zero)
+            step(reading + self.times[cell.channel] * self.sd * noise - zero)
         };
         protocol.cells().iter().zip(readings).map(shown).collect()
     }

@@ -13,6 +13,10 @@ use crate::chance::{happens, log_uniform, one_of};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{DEG, MM, STANDARD_GRAVITY, UM};
 
+/// How often one sensor is worse than the others, and how many times as much it scatters at most.
+const ONE_WORSE: f64 = 0.3;
+const MOST_WORSE: f64 = 8.0;
+
 /// What a protocol must have to carry an effect.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Needs {
@@ -107,7 +111,8 @@ pub fn draw(needs: Needs, residuals: &[f64], random: &mut Random) -> (Bench, Noi
     (bench, noise, times)
 }
 
-/// Normal as often as heavy-tailed, some of it correlated along the run.
+/// Normal as often as heavy-tailed, some of it correlated along the run, now and then with a sensor
+/// that is worse than the others.
 fn noise(residuals: &[f64], random: &mut Random) -> Noise {
     let shape = match residuals {
         [] if happens(random, 0.5) => Shape::Normal,
@@ -115,7 +120,12 @@ fn noise(residuals: &[f64], random: &mut Random) -> Noise {
         residuals => Shape::Bootstrap(residuals.to_vec()),
     };
     let correlation = if happens(random, 0.25) { random.uniform(0.2, 0.6) } else { 0.0 };
-    Noise { sd: log_uniform(random, 0.5, 5.0) * UM, shape, correlation, zero: random.uniform(0.3, 2.0) }
+    let mut times = [1.0; 3];
+    if happens(random, ONE_WORSE) {
+        times[random.index(3)] = log_uniform(random, 1.0, MOST_WORSE);
+    }
+    let (sd, zero) = (log_uniform(random, 0.5, 5.0) * UM, random.uniform(0.3, 2.0));
+    Noise { sd, shape, correlation, zero, times }
 }
 
 fn bench(needs: Needs, largest: f64, random: &mut Random) -> Bench {

@@ -8,7 +8,7 @@ mod units;
 pub(super) use self::in_file::Labels;
 use self::signs::signs;
 use self::swaps::swaps;
-pub(super) use self::units::{BESIDE, HARDLY_BESIDE, like_physics};
+pub(super) use self::units::{BESIDE, HARDLY_BESIDE, of_loads};
 use self::units::{decimals, load_units, reading_units};
 use super::possible::PossibleMistake;
 

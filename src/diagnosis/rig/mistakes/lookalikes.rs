@@ -1,8 +1,8 @@
 //! Units that look like physics: a pound for a kilogram is a rod 2.2 times stiffer than its file.
 //!
 //! A unit so near to what a rod may do is not tried as a mistake, since a joint or a modulus would
-//! be blamed on the operator. It is a rival instead: where all that a finding does to the readings
-//! ŷ is one factor,
+//! be blamed on the operator; and of a straight rod even kilograms are no surer than a soft root.
+//! Such a unit is a rival instead: where all that a finding does to the readings ŷ is one factor,
 //!
 //! ```text
 //! ŷ + Δ ≈ s·ŷ,   s = ŷᵀ(ŷ + Δ)/ŷᵀŷ        Δ the response of the finding's terms
@@ -16,7 +16,7 @@ use nalgebra::DVector;
 
 use super::super::effects::mistakes::UNIT_MISTAKE;
 use super::super::model::RigModel;
-use super::labels::{HARDLY_BESIDE, like_physics};
+use super::labels::{HARDLY_BESIDE, of_loads};
 use crate::diagnosis::rig::recording::columns::load_column;
 use crate::inference::{Evidence, Finding, ForwardModel, Location, Rival, Term};
 use crate::linalg::least_squares;
@@ -50,7 +50,7 @@ pub fn lookalikes(model: &RigModel, evidence: &Evidence, findings: &[Finding], n
     let is_near = |factor: f64| {
         [fitted, recorded].into_iter().flatten().any(|scale| (scale / factor).ln().abs() < HARDLY_BESIDE.ln())
     };
-    let units = like_physics(model.readings.load_column).into_iter();
+    let units = of_loads(model.readings.load_column).into_iter();
     let near = units.filter(|(_, factor)| is_near(*factor));
     near.map(|(unit, _)| {
         Rival::without_term(&UNIT_MISTAKE, Location::key(format!("{column} in {unit}")), 1.0)

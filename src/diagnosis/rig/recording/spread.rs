@@ -146,7 +146,7 @@ fn quartile(differences: &[f64]) -> Option<Scatter> {
 fn differences(axis: Axis, own: &[&Datum]) -> [Vec<f64>; 2] {
     let mut ways: BTreeMap<_, Vec<&Datum>> = BTreeMap::new();
     for datum in own.iter().filter(|datum| datum.direction.axis == axis) {
-        // there and back are two ways: of loads or displacements of either sign, that one of the motion
+        // there and back are two ways
         let is_back = datum.motion.map_or(datum.is_unloading(), |motion| motion.direction < 0.0);
         ways.entry((datum.stations(), is_back, datum.run)).or_default().push(datum);
     }

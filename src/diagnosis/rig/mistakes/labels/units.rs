@@ -92,15 +92,13 @@ const FOR_MICROMETRES: [Unit; 7] = [
 /// pipes.
 const LIKE_A_ROD: [(&str, f64); 1] = [("pounds (lb)", 0.453_592_37)];
 
-/// Units of the loads, with their factors, that softer or stiffer rods look like.
-pub fn like_physics(column: LoadColumn) -> Vec<(&'static str, f64)> {
-    match column {
-        LoadColumn::Newtons => {
-            let near = FOR_NEWTONS.iter().filter(|unit| unit.within < BESIDE);
-            near.map(|unit| (unit.name, unit.factor)).collect()
-        }
-        LoadColumn::Kilograms => LIKE_A_ROD.to_vec(),
-    }
+/// Units of the loads, with their factors, those that softer or stiffer rods look like too.
+pub fn of_loads(column: LoadColumn) -> Vec<(&'static str, f64)> {
+    let (units, like_a_rod): (&[Unit], &[_]) = match column {
+        LoadColumn::Newtons => (&FOR_NEWTONS, &[]),
+        LoadColumn::Kilograms => (&FOR_KILOGRAMS, &LIKE_A_ROD),
+    };
+    units.iter().map(|unit| (unit.name, unit.factor)).chain(like_a_rod.iter().copied()).collect()
 }
 
 /// Units of the loads.

@@ -56,6 +56,26 @@ fn a_unit_that_looks_like_physics_is_its_rival() {
     assert!(others.iter().all(|(effect, _)| effect.kind != crate::inference::Kind::Mistake), "{others:?}");
 }
 
+/// One number is all that a straight rod shows across itself: kilograms for newtons are a root that
+/// is soft, or the other way round.
+#[test]
+fn kilograms_on_a_straight_rod_are_a_rival_of_its_root() {
+    let straight = Rod::from_toml(
+        "rod",
+        "name = \"straight\"\n[geometry]\nl1_mm = 375\nl2_mm = 301\ngamma_deg = 180\n[material.steel]\n\
+         youngs_modulus_gpa = 193\nshear_modulus_gpa = 75\ndensity_kg_m3 = 7930\n[pipe1]\n\
+         material = \"steel\"\nouter_diameter_mm = 36\ninner_diameter_mm = 32\n[pipe2]\n\
+         material = \"steel\"\nouter_diameter_mm = 14\ninner_diameter_mm = 11\n",
+    )
+    .unwrap();
+    let in_kilograms = with_loads(&recorded(&straight, Bench::Full, 6), 1.0 / G);
+    let found = crate::diagnosis::rig::diagnose(&in_kilograms, Some(&straight)).unwrap();
+    let first = &found.diagnosis.findings[0];
+    let is_it = |place: &Location| place.to_string().contains("kilograms") || place.to_string() == "load_n";
+    let named = is_it(&first.location) || first.others().iter().any(|(_, place)| is_it(place));
+    assert!(named, "{} {:?}", first.location, first.others());
+}
+
 /// A rod that is 1 % softer than its file is within what the file knows: consistent, and --apply
 /// writes the better modulus.
 #[test]

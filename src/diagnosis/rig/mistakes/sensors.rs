@@ -8,6 +8,7 @@ use super::part::Part;
 use crate::diagnosis::rig::recording::columns::{column, rows_between};
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::diagnosis::rig::recording::evidence::resolution;
+use crate::diagnosis::rig::recording::spread::scatter_of;
 use crate::inference::{Estimate, Key, Quantity};
 use crate::spatial::Axis;
 use crate::statistics::median;
@@ -38,8 +39,8 @@ const HARDLY: f64 = 0.5;
 const SCALE: f64 = 0.1;
 /// How far beyond a limit the readings would lie, as a share of it.
 const BEYOND: f64 = 0.05;
-/// Ln of the chance by which readings at one load may be the same.
-const BY_CHANCE: f64 = -5.0;
+/// Ln of the chance by which readings at one load may be the same: one in fifty.
+const BY_CHANCE: f64 = -3.912;
 /// And of readings at loads that differ, all over a file; so many are looked at.
 const NEVER: f64 = -20.0;
 const LONG: usize = 8;
@@ -162,16 +163,20 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
             let of_lines = expected(data, &at, &ends);
             let of_rod = by_rod.and_then(|rod| expected_of_rod(data, &at, &ends, lines, rod));
             let step = step_of(data, &own);
+            // what a line leaves may be that it is bent, or slipped: it is no noise
+            let others: Vec<&Datum> = own.iter().filter(|i| !ends.contains(i)).map(|&i| &data[i]).collect();
+            let noise = scatter_of(&others).unwrap_or(f64::INFINITY);
             let beyond = |expected: Vec<(f64, f64)>| {
                 let beyond = expected.iter().map(|(value, _)| side * value - limit).collect::<Vec<_>>();
                 let scatter = expected.iter().fold(0.0, |most: f64, (_, scatter)| most.max(*scatter));
-                let least = expected.iter().fold(f64::INFINITY, |least, (_, scatter)| least.min(*scatter));
+                let least = expected.iter().fold(noise, |least, (_, scatter)| least.min(*scatter));
                 let (low, high) = range(&beyond);
                 let is_tied = at.len() >= TIED.0
                     && step > 0.0
                     && least.min(high - low) > TIED.1 * step
                     && trembles(data, &own);
-                cut_off(&beyond, scatter, limit, step.max(SAME * most)).or(is_tied.then_some(high.max(0.0)))
+                cut_off(&beyond, [scatter, noise], limit, step.max(SAME * most))
+                    .or(is_tied.then_some(high.max(0.0)))
             };
             let Some(high) = [of_lines, of_rod].into_iter().flatten().find_map(beyond) else { continue };
             let name = column(channel);
@@ -211,8 +216,9 @@ fn trembles(data: &[Datum], own: &[usize]) -> bool {
 }
 
 /// How far beyond a limit the farthest of some readings would lie, where they show that they are
-/// cut off there; `beyond` is what is expected of each, with its scatter.
-fn cut_off(beyond: &[f64], scatter: f64, limit: f64, step: f64) -> Option<f64> {
+/// cut off there; `beyond` is what is expected of each, with the scatter about their lines, and that
+/// from reading to reading.
+fn cut_off(beyond: &[f64], [scatter, noise]: [f64; 2], limit: f64, step: f64) -> Option<f64> {
     let (low, high) = range(beyond);
     let mean = beyond.iter().sum::<f64>() / beyond.len() as f64;
     // the same value to the last digit at loads that differ, all of them beyond; friction holds
@@ -221,8 +227,9 @@ fn cut_off(beyond: &[f64], scatter: f64, limit: f64, step: f64) -> Option<f64> {
     let is_flat = high - low > (BEYOND * limit).max(scatter) && low > -scatter && goes_on;
     // or, at one load, well beyond, with noise in all other readings: so many are the same by a
     // chance of step/(2·√π·scatter) each
-    let tie = (step / (2.0 * std::f64::consts::PI.sqrt() * scatter)).ln();
-    let is_noisy = scatter > 3.0 * step || (beyond.len() as f64 - 1.0) * tie < BY_CHANCE;
+    let noise = scatter.min(noise);
+    let tie = (step / (2.0 * std::f64::consts::PI.sqrt() * noise)).ln();
+    let is_noisy = noise > 3.0 * step || (beyond.len() as f64 - 1.0) * tie < BY_CHANCE;
     let is_still = low > 3.0 * scatter && is_noisy;
     (mean > BEYOND * limit && (is_flat || is_still)).then_some(high)
 }

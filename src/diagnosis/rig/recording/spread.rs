@@ -50,7 +50,7 @@ pub fn spread(data: &[Datum], header: &RigHeader) -> Vec<f64> {
     // there is one load cell, and one that is read at each of some stations is one sensor
     let sensor = numbered(data.iter().map(|d| d.imposed.is_none().then(|| d.sensor())));
     let channel = numbered(data.iter().map(|d| d.imposed.is_none().then_some(d.channel)));
-    let scatter_of = |numbers: &[usize], number: usize| {
+    let of_number = |numbers: &[usize], number: usize| {
         scatter(
             &data.iter().zip(numbers).filter(|(_, own)| **own == number).map(|(d, _)| d).collect::<Vec<_>>(),
         )
@@ -58,12 +58,12 @@ pub fn spread(data: &[Datum], header: &RigHeader) -> Vec<f64> {
     let count = sensor.iter().max().map_or(0, |last| last + 1);
     let of_sensor = |k: usize| {
         let first = sensor.iter().position(|number| *number == k)?;
-        scatter_of(&sensor, k).or_else(|| scatter_of(&channel, channel[first]))
+        of_number(&sensor, k).or_else(|| of_number(&channel, channel[first]))
     };
     let scatters: Vec<Option<Scatter>> = (0..count).map(of_sensor).collect();
     let Some(usual) = usual(&scatters, &sensor) else { return vec![1.0; data.len()] };
-    let of_number = |number: &usize| scatters[*number].as_ref().map_or(1.0, |scatter| scatter.beside(&usual));
-    sensor.iter().map(of_number).collect()
+    let beside = |number: &usize| scatters[*number].as_ref().map_or(1.0, |scatter| scatter.beside(&usual));
+    sensor.iter().map(beside).collect()
 }
 
 /// What the header says of both, where both were read: √((c·s_F)² + s²)/s of a load, c what a
@@ -114,6 +114,11 @@ fn usual(scatters: &[Option<Scatter>], sensor: &[usize]) -> Option<Scatter> {
     let count: usize = alike.iter().map(|own| own.count).sum();
     let square: f64 = alike.iter().map(|own| own.count as f64 * own.sigma.powi(2)).sum();
     Some(Scatter { sigma: (square / count as f64).sqrt(), count })
+}
+
+/// What the readings of one sensor scatter by, m: one standard deviation; `None` of too few.
+pub fn scatter_of(own: &[&Datum]) -> Option<f64> {
+    scatter(own).map(|scatter| scatter.sigma)
 }
 
 /// Of the readings of one sensor; `None` of too few.

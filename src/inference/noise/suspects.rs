@@ -36,7 +36,7 @@ fn are_of_one_series(evidence: &Evidence, suspects: &[Suspect]) -> bool {
 }
 
 /// True where neighbours of a run are far off to one side: so many that they are no single ones, or
-/// the run as a whole.
+/// the run as a whole, or as many of it, which is half of it.
 fn are_together(evidence: &Evidence, suspects: &[Suspect]) -> bool {
     const TOGETHER: usize = 3;
     let side: BTreeMap<usize, bool> = suspects.iter().map(|s| (s.datum, s.sigma > 0.0)).collect();
@@ -45,8 +45,14 @@ fn are_together(evidence: &Evidence, suspects: &[Suspect]) -> bool {
         runs.entry(run).or_default().push(side.get(&datum).copied());
     }
     runs.values().any(|run| {
+        let is_half = |side: bool| {
+            let count = run.iter().filter(|own| **own == Some(side)).count();
+            count >= TOGETHER && 2 * count >= run.len()
+        };
         let mut of_one_side = run.chunk_by(|a, b| a == b).filter(|part| part[0].is_some());
         of_one_side.any(|part| part.len() >= TOGETHER || (part.len() > 1 && part.len() == run.len()))
+            || is_half(true)
+            || is_half(false)
     })
 }
 
@@ -103,6 +109,15 @@ mod tests {
         };
         assert!(far(&[(7, 5.0), (8, 6.0), (9, 5.0)]));
         assert!(!far(&[(7, 5.0), (8, -6.0), (9, 5.0)]) && !far(&[(7, 5.0), (9, 6.0), (11, 5.0)]));
+        // most of a run, with one between them that is just not far enough
+        evidence.shared = (0..40).map(|datum| datum / 5).collect();
+        let far = |data: &[(usize, f64)]| {
+            let suspects: Vec<Suspect> =
+                data.iter().map(|&(datum, sigma)| Suspect { datum, sigma }).collect();
+            are_many(&evidence, &suspects)
+        };
+        assert!(far(&[(10, 5.0), (11, 6.0), (13, 5.0)]));
+        assert!(!far(&[(10, 5.0), (11, -6.0), (13, 5.0)]) && !far(&[(8, 5.0), (11, 6.0), (13, 5.0)]));
     }
 
     #[test]

@@ -25,9 +25,10 @@ use super::lines::{Fit, fit};
 use super::part::Part;
 use super::possible::exact;
 use super::search::ODDS;
+use crate::diagnosis::rig::recording::chronicle::Chronicle;
 use crate::diagnosis::rig::recording::columns::{columns, load_column, rows_between};
 use crate::inference::Key;
-use crate::rig::readings::{LoadColumn, Phase, Reading};
+use crate::rig::readings::{Driven, LoadColumn, Phase, Reading};
 use crate::spatial::Axis;
 use crate::statistics::median;
 
@@ -182,9 +183,14 @@ impl<'a> Sheet<'a> {
         let label = numbered(
             rows.iter().map(|row| (row.direction.axis.index(), at(row.load_station), at(row.read_station))),
         );
-        let way = numbered(rows.iter().zip(&label).map(|(row, label)| {
-            (&row.session, &row.trial, row.direction.sign, label, row.phase == Some(Phase::Unload))
-        }));
+        // trials without names are runs too
+        let chronicle = Chronicle::of(rows, Driven::Load);
+        let run = numbered(chronicle.rows.iter().zip(&label).map(|(own, label)| (own.run, label)));
+        let way = numbered(
+            rows.iter()
+                .zip(&run)
+                .map(|(row, run)| (run, row.direction.sign, row.phase == Some(Phase::Unload))),
+        );
         let mut of_run: Vec<Vec<usize>> = vec![Vec::new(); way.iter().max().map_or(0, |last| last + 1)];
         way.iter().enumerate().for_each(|(i, &way)| of_run[way].push(i));
         let mut turned: Vec<usize> = (0..rows.len()).collect();
@@ -199,7 +205,6 @@ impl<'a> Sheet<'a> {
         let most = deflection.iter().copied().fold(0.0, f64::max);
         deflection.iter_mut().for_each(|own| *own = own.max(most / 3.0));
         let load: Vec<f64> = rows.iter().map(|row| f64::from(row.direction.sign) * row.load).collect();
-        let run = numbered(rows.iter().zip(&label).map(|(row, label)| (&row.session, &row.trial, label)));
         Sheet { rows, label, way, deflection, turned, load, run }
     }
 

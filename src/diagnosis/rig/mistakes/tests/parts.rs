@@ -273,3 +273,24 @@ fn readings_at_one_load_that_are_the_same_are_cut_off() {
     let mended = mended(&readings, Some(&file), &[]).unwrap();
     assert_eq!(names(&mended), ["saturated_sensor dz_um"]);
 }
+
+/// Trials without names that repeat one list of loads: where one of them has another zero, those
+/// before it do not stand two rows too low.
+#[test]
+fn a_zero_of_an_unnamed_trial_moves_no_rows() {
+    let file = rod(ROD_5);
+    // about what the rod yields along y and z, m/N
+    let (c, mut random) = (42.0 * UM, Random::seeded(2, 0));
+    let mut rows = Vec::new();
+    for trial in 0..6 {
+        for axis in [Axis::Y, Axis::Z] {
+            for load in [4.0, 8.0, 12.0, 16.0, 20.0] {
+                let zero = if trial == 5 && axis == Axis::Z { -0.5 * 20.0 * c } else { 0.0 };
+                let offset = c * load + zero + UM * random.normal();
+                rows.push(Reading::new(Direction::along(axis), load).with_offset(axis, offset));
+            }
+        }
+    }
+    let mended = mended(&Readings::from_rows(rows).unwrap(), Some(&file), &[]).unwrap();
+    assert!(names(&mended).iter().all(|name| !name.starts_with("row_mistake")), "{:?}", names(&mended));
+}

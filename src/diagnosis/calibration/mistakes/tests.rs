@@ -1,5 +1,6 @@
 mod fixtures;
 mod held;
+mod moved_base;
 mod parts;
 
 use nalgebra::Vector3;
@@ -373,24 +374,6 @@ fn two_mistakes_at_once() {
     let mut all = found(&wrong);
     all.sort();
     assert_eq!(all, [one("offset_mistake", "q5_deg"), one("sign_mistake", "q3_deg")].concat());
-}
-
-#[test]
-fn a_base_that_moved_is_found_at_its_row_and_becomes_a_station() {
-    for (row, way, angle) in [(31, 0.05, 1.0 * DEG), (20, 0.5, 10.0 * DEG), (42, 1.5, 40.0 * DEG)] {
-        let mut wrong = tracked(60, 7);
-        let motion = Pose::from_xyz_rpy([way, 0.0, 0.0], [angle, 0.0, 0.0]);
-        points(&mut wrong)[row..].iter_mut().for_each(|point| *point = motion.point(point));
-        let mended = mended(&wrong);
-        assert_eq!(mended.found.len(), 1);
-        assert_eq!(mended.found[0].effect.name, "base_shift");
-        assert_eq!(mended.found[0].location.to_string(), format!("after pose {row}"));
-        let calibrated = calibrate(&mended.campaign, Mode::None, &Options::default()).unwrap();
-        let rms = calibrated.rms();
-        assert!((rms - 30.0 * UM * 3f64.sqrt()).abs() < 20.0 * UM, "{rms}");
-        assert!(!suspected(&wrong, Mode::None, &Neighbours::default()).unwrap().is_empty());
-        assert!(suspected(&mended.campaign, Mode::None, &Neighbours::default()).unwrap().is_empty());
-    }
 }
 
 /// A tip 36 mm beside the last axis: with that joint's zero off by 90° it may stand elsewhere on

@@ -2,6 +2,7 @@ mod fixtures;
 mod held;
 mod moved_base;
 mod parts;
+mod spots;
 
 use nalgebra::Vector3;
 

@@ -1,17 +1,15 @@
 //! Mistakes that concern some rows alone.
 
-use nalgebra::{Matrix3x6, Vector6};
-
 use super::*;
 
-fn in_rows(campaign: &Campaign, rows: std::ops::Range<usize>, change: impl Fn(&mut [f64])) -> Campaign {
+pub fn in_rows(campaign: &Campaign, rows: std::ops::Range<usize>, change: impl Fn(&mut [f64])) -> Campaign {
     let mut wrong = campaign.clone();
     wrong.measurements.joint_values.chunks_mut(6).skip(rows.start).take(rows.len()).for_each(change);
     wrong
 }
 
 /// The one finding, its cure, and the campaign that was meant.
-fn only(campaign: &Campaign) -> (&'static str, String, Campaign) {
+pub fn only(campaign: &Campaign) -> (&'static str, String, Campaign) {
     let mended = mended(campaign);
     let cures: Vec<&str> = mended.found.iter().map(|finding| finding.description.observed.as_str()).collect();
     let [finding] = &mended.found[..] else { panic!("{cures:?}") };
@@ -324,53 +322,4 @@ fn all_signs_of_the_middle_rows() {
     right.measurements = right.measurements.subset(&order);
     let wrong = in_rows(&right, 26..58, |q| q.iter_mut().for_each(|q| *q = -*q));
     assert_eq!(found(&wrong)[0], ("sign_mistake".into(), "q1_deg … q6_deg, from pose 27 to pose 58".into()));
-}
-
-/// Spots are visited one after another, and either end of the recording has seen a single one.
-#[test]
-fn radians_in_the_middle_of_spots_that_are_visited_one_by_one() {
-    let spots = [[0.5, 0.3, 0.4], [-0.4, 0.5, 0.5], [0.2, -0.6, 0.3]];
-    let right = visited(&spots.map(Vector3::from), 16);
-    let wrong = in_rows(&right, 13..36, |q| q.iter_mut().for_each(|q| *q *= DEG));
-    let (effect, cure, _) = only(&wrong);
-    assert_eq!(effect, "unit_mistake");
-    assert_eq!(cure, "Multiply q1_deg … q6_deg by 180/π from pose 14 to pose 36");
-}
-
-/// Poses whose tip is within a millimetre of some spots of {0}, so many at each.
-fn visited(spots: &[Vector3<f64>], each: usize) -> Campaign {
-    let built = robot(1.0, 7);
-    let mut random = Random::seeded(7, 3);
-    let base = Pose::from_xyz_rpy(BASE.0, BASE.1);
-    let mut recording = Recording::new(6);
-    for spot in spots {
-        let mut found = 0;
-        while found < each {
-            let there = spot + Vector3::from_fn(|_, _| 0.5 * MM * random.normal());
-            let start = Vector6::from_fn(|_, _| random.uniform(-2.4, 2.4));
-            let Some(q) = reaching(&built, &there, start) else { continue };
-            let noise = Vector3::from_fn(|_, _| 30.0 * UM * random.normal());
-            let tip = built.flange_at(q.as_slice()).point(&TOOL.into());
-            recording.add(q.as_slice(), base.point(&tip) + noise).unwrap();
-            found += 1;
-        }
-    }
-    Campaign::new(robot(0.0, 7), recording).unwrap().with_base(BASE.0, BASE.1).with_tool(TOOL.into())
-}
-
-/// Joint values near `q` that bring the tip to a point, by Gauss and Newton.
-fn reaching(robot: &Robot, point: &Vector3<f64>, mut q: Vector6<f64>) -> Option<Vector6<f64>> {
-    const STEP: f64 = 1e-6;
-    let off = |q: &Vector6<f64>| robot.flange_at(q.as_slice()).point(&TOOL.into()) - point;
-    for _ in 0..30 {
-        let here = off(&q);
-        let columns: [Vector3<f64>; 6] = std::array::from_fn(|joint| {
-            let mut beside = q;
-            beside[joint] += STEP;
-            (off(&beside) - here) / STEP
-        });
-        let jacobian: Matrix3x6<f64> = Matrix3x6::from_columns(&columns);
-        q -= jacobian.pseudo_inverse(1e-3).ok()? * here;
-    }
-    (off(&q).norm() < UM && q.amax() < 3.0).then_some(q)
 }

@@ -2,6 +2,7 @@ mod fixtures;
 mod held;
 mod moved_base;
 mod parts;
+mod rows;
 mod spots;
 
 use nalgebra::Vector3;
@@ -248,24 +249,6 @@ fn a_validation_from_another_place_is_not_mirrored_because_that_is_nearer() {
     let seen = with_positions(&tracked(20, 7), |x| x + away).measurements;
     wrong.validation = Some(seen.clone());
     assert_eq!(mended(&wrong).campaign.validation.unwrap().targets, seen.targets);
-}
-
-#[test]
-fn positions_some_rows_away_from_their_angles() {
-    for by in [1, -2] {
-        let mut wrong = tracked(60, 7);
-        let count = wrong.measurements.len() as isize;
-        let there = |row: isize| (row - by).rem_euclid(count) as usize;
-        let old = points(&mut wrong).clone();
-        for (row, point) in points(&mut wrong).iter_mut().enumerate() {
-            *point = old[there(row as isize)];
-        }
-        let mended = mended(&wrong);
-        assert_eq!(mended.found[0].effect.name, "row_mistake");
-        assert_eq!(mended.found[0].estimates[0].value, by as f64);
-        // the rows whose positions are lost are left out
-        assert_eq!(mended.campaign.measurements.len() as isize, count - by.abs());
-    }
 }
 
 #[test]

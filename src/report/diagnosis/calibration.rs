@@ -174,7 +174,8 @@ mod tests {
     use super::*;
     use crate::calibration::campaign::FileNames;
     use crate::diagnosis::Limitation;
-    use crate::diagnosis::calibration::apply;
+    use crate::diagnosis::calibration::{Applied, apply};
+    use crate::inference::{Discrepancy, ShownBy};
     use crate::units::UM;
 
     /// Along the order of the poses, m.
@@ -195,6 +196,37 @@ mod tests {
             let said = headline(&doubtful);
             assert!(said.starts_with("Possible, but held-out poses do not confirm this ("), "{said}");
             assert!(said.contains("): The base drifts") && !said.contains("falls"), "{said}");
+        });
+    }
+
+    /// A name that most searches do not find again, or with which held-out poses are predicted hardly
+    /// better, is said behind what nothing explains; one that they confirm, before it.
+    #[test]
+    fn what_is_hardly_confirmed_is_said_behind_what_remains() {
+        figures::tests::with_diagnosed(&drift, |_, found| {
+            let mut left = found.clone();
+            left.diagnosis.discrepancy = Some(Discrepancy {
+                candidate: None,
+                location: None,
+                shown_by: ShownBy::Repeats,
+                rms: 20.0 * UM,
+                shape: found.diagnosis.after.clone(),
+            });
+            let (first, behind) = ("The base drifts", "Repeated poses share an unexplained error");
+            let said = headline(&left);
+            assert!(said.starts_with(first) && said.contains(behind), "{said}");
+            let mut lost = left.clone();
+            lost.diagnosis.findings.iter_mut().for_each(|finding| finding.found_in_folds = Some((1, 5)));
+            let said = headline(&lost);
+            assert!(said.starts_with(behind), "{said}");
+            assert!(said.contains("Beside it, and perhaps a part of it: the base drifts"), "{said}");
+            // nothing else is left to be said first
+            let mut alone = lost;
+            alone.diagnosis.discrepancy = None;
+            assert!(headline(&alone).starts_with(first), "{}", headline(&alone));
+            let held_out = left.diagnosis.held_out.as_mut().unwrap();
+            held_out.errors_after = held_out.errors_before.clone() * 0.97;
+            assert!(headline(&left).starts_with(behind), "{}", headline(&left));
         });
     }
 

@@ -199,8 +199,8 @@ mod tests {
         });
     }
 
-    /// A name that most searches do not find again, or with which held-out poses are predicted hardly
-    /// better, is said behind what nothing explains; one that they confirm, before it.
+    /// A name that most searches do not find again, or with which held-out poses are predicted
+    /// hardly better, is said behind what nothing explains; one that they confirm, before it.
     #[test]
     fn what_is_hardly_confirmed_is_said_behind_what_remains() {
         figures::tests::with_diagnosed(&drift, |_, found| {

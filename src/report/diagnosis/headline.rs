@@ -90,8 +90,8 @@ fn answer(subject: &Subject) -> String {
     }
 }
 
-/// True where what was named is hardly confirmed: held-out data are predicted hardly better with it,
-/// or most searches that leave a part of the data out do not find any of it again.
+/// True where what was named is hardly confirmed: held-out data are predicted hardly better with
+/// it, or most searches that leave a part of the data out do not find any of it again.
 fn are_minor(subject: &Subject) -> bool {
     let findings = &subject.diagnosis.findings;
     let is_lost =

@@ -39,9 +39,9 @@ impl MistakeSearch<'_> {
         scores
     }
 
-    /// Scores with each clamp knocked in place of another robot: gravity along another axis, which a
-    /// few clamps hardly tell from one of them that moved. The row is the one before and after which
-    /// the middle residuals differ most, by the rows on both sides:
+    /// Scores with each clamp knocked in place of another robot: gravity along another axis, which
+    /// a few clamps hardly tell from one of them that moved. The row is the one before and after
+    /// which the middle residuals differ most, by the rows on both sides:
     ///
     /// max |r̄₁ − r̄₂|²·n₁·n₂/(n₁ + n₂)
     pub fn knocked_clamps(&self, changed: &FittedDraft, from: &FittedDraft) -> Vec<f64> {

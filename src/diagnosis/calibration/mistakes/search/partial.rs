@@ -15,8 +15,8 @@ use crate::units::DEG;
 /// Windows of the rows that are fitted by themselves, as shares of them; one that ends before it
 /// begins goes on with the first rows.
 ///
-/// Clamps are visited one after another: where the rows between are spoilt, one end alone has seen a
-/// single clamp, which says nothing of where the base stands. Both ends together have seen two.
+/// Clamps are visited one after another: where the rows between are spoilt, one end alone has seen
+/// a single clamp, which says nothing of where the base stands. Both ends together have seen two.
 const WINDOWS: [(f64, f64); 10] = [
     (0.0, 0.5),
     (0.5, 1.0),

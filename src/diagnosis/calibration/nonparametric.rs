@@ -72,7 +72,10 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
             entries.extend(along(context, angle_of(j), &label, &angle, &values, frame));
         }
     }
-    entries.extend(context.revolute().into_iter().filter_map(|j| zero(context, j)));
+    // the first joint turns as the base does, the last one as the tool
+    let inner =
+        context.revolute().into_iter().filter(|j| (1..context.joint_count().saturating_sub(1)).contains(j));
+    entries.extend(inner.filter_map(|j| zero(context, j)));
     entries.extend(waves::all(context));
     entries.extend(workspace(context));
     entries.extend((0..3).map(|axis| by_orientation(context, axis)));

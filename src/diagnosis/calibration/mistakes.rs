@@ -35,7 +35,7 @@ use self::columns::Silent;
 use self::draft::Draft;
 use self::held::{held, mostly_held, without_held};
 use self::may_be_meant::add_rivals;
-use self::motion::measure_moves;
+use self::motion::{beside_found, has_moved, measure_moves};
 use self::moves::Other;
 use self::quick::LoadedRobot;
 use self::search::drifts::clocks;
@@ -210,7 +210,17 @@ impl Mended {
             found.law = None;
         }
         let mut mistakes = self.found.clone();
-        measure_moves(&self.campaign.measurements, &found.model.calibration, &mut mistakes);
+        if has_moved(&mistakes) {
+            // laws that are not named are taken for none
+            let nothing = diagnosis.findings.is_empty();
+            let beside =
+                if nothing { Vec::new() } else { beside_found(&found.model, &diagnosis.hypothesis)? };
+            let calibrations: Vec<_> = match beside.is_empty() {
+                true => vec![&found.model.calibration],
+                false => beside.iter().collect(),
+            };
+            measure_moves(&self.campaign.measurements, &calibrations, &mut mistakes);
+        }
         diagnosis.findings.splice(0..0, mistakes);
         found.model.recorded = self.recorded;
         Ok(found)

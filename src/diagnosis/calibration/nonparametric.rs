@@ -72,6 +72,10 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
             entries.extend(along(context, angle_of(j), &label, &angle, &values, frame));
         }
     }
+    // the first joint turns as the base does, the last one as the tool
+    let inner =
+        context.revolute().into_iter().filter(|j| (1..context.joint_count().saturating_sub(1)).contains(j));
+    entries.extend(inner.filter_map(|j| zero(context, j)));
     entries.extend(waves::all(context));
     entries.extend(workspace(context));
     entries.extend((0..3).map(|axis| by_orientation(context, axis)));
@@ -117,6 +121,24 @@ fn along(
     };
     let follows = format!("follows {name}, along {directions}");
     Some(curve(label, follows, Some(variable), parameters.collect()))
+}
+
+/// A joint whose zero goes its own way while the poses are recorded: a drive that warms up by its
+/// own moves, which two slips of the joint describe roughly.
+///
+/// Σ_k a_k·cos(π k x)·Jⱼ        x the order of the poses, from 0 to 1
+fn zero(context: &Context, joint: usize) -> Option<Entry> {
+    let order: Vec<f64> = (0..context.configurations.len()).map(|row| row as f64).collect();
+    let x = scaled(&order)?;
+    let lever = context.largest(|there| there.tip_jacobian[joint].norm());
+    let of_order = |k: usize| {
+        let column = context.column(|row, there| there.tip_jacobian[joint] * cosine(k, x[row]));
+        (linear(format!("cosine_{k}_urad"), SIZE / ((1 + k) as f64 * lever)), column)
+    };
+    let label = format!("order, a curve of the zero of joint {}", joint + 1);
+    let follows = format!("follows the order of the poses, as the zero of joint {}", joint + 1);
+    let parameters = (1..=MOST).map(of_order).collect();
+    (lever > 0.0).then(|| curve(label, follows, Some(Variable::Order), parameters))
 }
 
 fn workspace(context: &Context) -> Option<Entry> {

@@ -1,30 +1,30 @@
 //! What is a calibration's own in the report of its diagnosis.
 
 mod distances;
+mod doubts;
 mod figures;
 mod joints;
+mod remains;
+mod written;
 
 use serde_json::{Value, json};
 
 use self::distances::{Distances, distances_json, mean};
-use super::headline::um;
-use super::remainder::{Remainder, Sample};
+use self::doubts::{doubtful, far_from_file};
+use self::remains::remainder;
+use self::written::destination;
+pub use self::written::{announced, applied};
 use super::subject::{Errors, LawNote, LawSubject, Subject};
 use super::{json as whole_json, report as whole_report};
-use crate::calibration::campaign::{self, Targets};
-use crate::calibration::{MOST_SCATTER, Warning};
-use crate::diagnosis::calibration::{Applied, CalibrationDiagnosis, GearError, law_destination, remark};
-use crate::inference::{Finding, ForwardModel, Kind, Location, Plan, PosePlan, ShownBy, Variable, WrittenTo};
+use crate::diagnosis::calibration::{CalibrationDiagnosis, GearError, law_destination, remark};
+use crate::inference::{Finding, ForwardModel, Plan, PosePlan};
 use crate::report::calibration::warnings as of_calibration;
-use crate::report::{Block, Report, Section};
-use crate::robot::{Motion, is_urdf};
-use crate::rod;
-use crate::units::{DEG, MM, UM, significant};
+use crate::report::{Block, Report};
+use crate::robot::Motion;
+use crate::units::{DEG, MM};
 
 /// Coordinates of a pose.
 const AXES: [&str; 3] = ["x", "y", "z"];
-/// Most samples of the shape.
-const SAMPLES: usize = 12;
 
 /// The report of `rodcal diagnose calibration`.
 pub fn report(found: &CalibrationDiagnosis) -> Report {
@@ -40,45 +40,6 @@ pub fn json(found: &CalibrationDiagnosis) -> Value {
 /// What was found, and what it does to the errors.
 pub fn headline(found: &CalibrationDiagnosis) -> String {
     super::headline::headline(&subject(found))
-}
-
-/// What was written into the robot, on the page and in the JSON.
-pub fn applied(report: &mut Report, json: &mut Value, applied: &Applied) {
-    let said = [
-        ("Corrected in the campaign", &applied.undone),
-        ("Written into the robot file", &applied.entered),
-        ("Corrected in the measurements", &applied.removed),
-        ("Not written, because the file has no key for it", &applied.left_out),
-    ];
-    let list = |(what, list): (&str, &Vec<String>)| {
-        list.iter().map(|words| format!("{what}: {words}")).collect::<Vec<_>>()
-    };
-    let mut points: Vec<String> = said.into_iter().flat_map(list).collect();
-    points.push(format!(
-        "Calibrated again with that, the mean distance of the tip from its measured position is {} µm.",
-        um(applied.mean)
-    ));
-    if let Some((without, with)) = applied.unseen {
-        let (without, with) = (um(without), um(with));
-        points
-            .push(format!("At the validation poses it is {with} µm, and {without} µm without the findings."));
-        if applied.is_worse() {
-            report.warnings.push(format!(
-                "the corrected robot is worse at the validation poses: {with} µm on average, {without} µm without the findings; do not use it"
-            ));
-        }
-    }
-    report.sections.push(Section::new("The corrected robot", vec![Block::List(points)]));
-    json["applied"] = json!({
-        "files": applied.files.iter().map(|(name, _)| name).collect::<Vec<_>>(),
-        "undone": applied.undone,
-        "entered": applied.entered,
-        "removed": applied.removed,
-        "left_out": applied.left_out,
-        "mean_um": applied.mean / UM,
-        "validation_mean_before_um": applied.unseen.map(|(without, _)| without / UM),
-        "validation_mean_um": applied.unseen.map(|(_, with)| with / UM),
-    });
 }
 
 fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
@@ -157,106 +118,6 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
     }
 }
 
-/// What makes the rod's file one that may not be meant: a number that no rod has, a tip elsewhere.
-fn doubtful(found: &CalibrationDiagnosis) -> Option<String> {
-    let unusual = found.model.campaign.warnings.iter().find_map(|warning| match warning {
-        campaign::Warning::Rod { file, warning: rod::Warning::Unusual { key, value, unit, least, most } } => {
-            let value = significant(*value, 4);
-            Some(format!(
-                "`{key}` of {file} is {value} {unit}, where {least} to {most} {unit} is usual: check that first, \
-                 for what follows takes it as stated."
-            ))
-        }
-        _ => None,
-    });
-    let elsewhere = || {
-        found.model.calibration.warnings.iter().find_map(|warning| match warning {
-            Warning::TipElsewhere { calibrated, of_rod } => Some(format!(
-                "The tip is {} mm from where the rod's file has it: is that the file of this rod? What follows \
-                 takes it as stated.",
-                significant((calibrated - of_rod).norm() / MM, 3)
-            )),
-            _ => None,
-        })
-    };
-    unusual.or_else(elsewhere)
-}
-
-/// A parameter that the calibration has put far from the robot's file: no error of the poses, but
-/// hardly what the file means.
-fn far_from_file(found: &CalibrationDiagnosis) -> Option<String> {
-    let calibration = &found.model.calibration;
-    let known = &calibration.setup.robot.standard_uncertainty;
-    let far = calibration.warnings.iter().filter_map(|warning| match warning {
-        Warning::FarFromDrawing { parameter, correction, .. }
-        | Warning::Implausible { parameter, correction } => {
-            let times = correction.abs() / known.of(*parameter)?;
-            Some((times, *parameter, *correction))
-        }
-        _ => None,
-    });
-    let (times, parameter, correction) = far.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let (unit, times) = (parameter.unit(), significant(times, 2));
-    let space = if unit.symbol == "°" { "" } else { " " };
-    let correction = format!("{}{space}{}", significant(correction / unit.si, 3), unit.symbol);
-    Some(format!(
-        "Parameter {parameter} is {correction} from the robot file, {times} of its standard uncertainties."
-    ))
-}
-
-/// Where `--apply` writes a finding; `None` where no file has a place for it.
-fn destination(finding: &Finding) -> Option<&'static str> {
-    match finding.written_to {
-        WrittenTo::Model | WrittenTo::Recording if !finding.is_of_model() => Some("campaign"),
-        WrittenTo::Model => Some("robot"),
-        WrittenTo::Recording => Some("measurements"),
-        WrittenTo::Nowhere => None,
-    }
-}
-
-/// What `--apply` would do, before it does.
-pub fn announced(report: &mut Report, found: &CalibrationDiagnosis) {
-    let campaign = found.model.campaign;
-    let (is_urdf, has_sockets) =
-        (is_urdf(&campaign.robot_text), matches!(campaign.measurements.targets, Targets::Sockets(_)));
-    let line = |finding: &Finding| {
-        let what = (finding.effect.cause_at)(&finding.location);
-        match destination(finding) {
-            Some("robot") if is_urdf => {
-                format!("Into a file beside the URDF, for calibrate and predict: {what}")
-            }
-            Some("robot") => format!("Into the robot file, for calibrate and predict: {what}"),
-            Some("measurements") if finding.kind() == Kind::Physics => {
-                format!("Out of the measurements, for these poses only; predict will not know it: {what}")
-            }
-            Some("measurements") if has_sockets => {
-                format!("Into the measurements, where it is another socket from then on: {what}")
-            }
-            Some("measurements") => format!("Out of the measurements: {what}"),
-            Some(_) => format!("Corrected in the campaign: {what}"),
-            None => format!("Nowhere, because no file has a place for it: {what}"),
-        }
-    };
-    let laws = found.law.iter().flat_map(|proposed| proposed.laws()).map(|law| {
-        let what = format!("the law of the {} over the {}", law.site.result.name, law.site.variable.name);
-        match law_destination(law, &found.model) {
-            WrittenTo::Model if is_urdf => {
-                format!("Into a file beside the URDF, for calibrate and predict: {what}")
-            }
-            WrittenTo::Model => format!("Into the robot file, for calibrate and predict: {what}"),
-            WrittenTo::Recording => format!(
-                "Out of the measurements, for these poses only, because this recording alone has the {}: {what}",
-                law.site.variable.name
-            ),
-            WrittenTo::Nowhere => format!("Nowhere, because no file has a place for it: {what}"),
-        }
-    });
-    let lines: Vec<String> = found.diagnosis.findings.iter().map(line).chain(laws).collect();
-    if !lines.is_empty() {
-        report.sections.push(Section::new("What --apply would write", vec![Block::List(lines)]));
-    }
-}
-
 /// A gear's shape takes several terms.
 fn details(finding: &Finding) -> String {
     match GearError::of(finding).is_some() && finding.parts.len() > 1 {
@@ -307,94 +168,6 @@ fn pose_plan(found: &CalibrationDiagnosis, plan: &PosePlan) -> Value {
     })
 }
 
-/// How much of what is left wanders, and over how many poses, or how long.
-fn wandering(found: &CalibrationDiagnosis) -> String {
-    let words = "An unexplained error wanders: poses that follow one another are off together";
-    let Some(noise) = found.evidence.correlated_noise else { return words.to_owned() };
-    let times = found.evidence.covariate(Variable::Time).map(|time| &time.values[..]).unwrap_or_default();
-    let (first, last) = times.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &time| {
-        // the smaller and the larger of two numbers are never NaN
-        (a.min(time), b.max(time))
-    });
-    let minutes =
-        (last - first) / (found.model.campaign.measurements.len().max(2) - 1) as f64 / 60.0 * noise.length;
-    let or_minutes = match minutes > 0.0 && minutes.is_finite() {
-        true => format!(" ({} min)", significant(minutes, 2)),
-        false => String::new(),
-    };
-    format!(
-        "{words}, over about {} poses{or_minutes}, with {} % of the variance of what is left",
-        significant(noise.length, 2),
-        significant(100.0 * noise.share, 2)
-    )
-}
-
-/// What is structured and no effect explains, if anything is.
-fn remainder(found: &CalibrationDiagnosis) -> Option<Remainder> {
-    let left = found.diagnosis.discrepancy.as_ref()?;
-    let (location, words, along) = match &left.location {
-        Some(Location::Curve { label, follows, along }) => {
-            (label.clone(), format!("An unexplained error {follows}"), *along)
-        }
-        _ => ("repeated poses".to_owned(), "Repeated poses share an unexplained error".to_owned(), None),
-    };
-    let test = &found.diagnosis.noise_test;
-    let (location, words) = match (left.shown_by, test.stated) {
-        (ShownBy::StatedNoise, Some(stated)) => {
-            let (own, stated) = (um(test.estimated), um(stated));
-            let words = format!(
-                "The poses scatter by {own} µm, more than the stated noise of {stated} µm, and follow nothing that was \
-                 recorded; does that noise hold for the robot's repeatability too"
-            );
-            ("all poses".to_owned(), words)
-        }
-        (ShownBy::Neighbours, _) => ("poses that follow one another".to_owned(), wandering(found)),
-        _ => (location, words),
-    };
-    let rows = found.model.by_row(&left.shape);
-    let is_no_scatter = found.is_implausible();
-    let (location, words) = match left.location.is_none() && is_no_scatter {
-        true => ("all poses".to_owned(), "The calibrated robot does not explain the poses".to_owned()),
-        false => (location, words),
-    };
-    let largest = rows.iter().map(|row| row.norm()).fold(0.0, f64::max);
-    let covariate = along
-        .and_then(|along| found.evidence.covariate(along))
-        .or_else(|| found.evidence.covariate(Variable::Order))?;
-    let mut order: Vec<usize> = (0..rows.len()).filter(|&row| !covariate.values[3 * row].is_nan()).collect();
-    order.sort_by(|&a, &b| covariate.values[3 * a].total_cmp(&covariate.values[3 * b]));
-    let step = (order.len().saturating_sub(1) as f64 / (SAMPLES as f64 - 1.0)).max(1.0);
-    let samples = (0..order.len().min(SAMPLES)).filter_map(|k| {
-        let row = *order.get((k as f64 * step).round() as usize)?;
-        Some(Sample {
-            name: found.model.campaign.measurements.rows[row].pose.clone(),
-            json: json!(row + 1),
-            value: covariate.values[3 * row],
-            left: rows[row].iter().copied().collect(),
-        })
-    });
-    let rms = um(left.rms);
-    Some(Remainder {
-        location,
-        sentence: match is_no_scatter {
-            true => format!(
-                "{words}: {rms} µm rms per coordinate, up to {} µm. No robot's error is more than {} % of \
-                 its reach: check the signs, order and zeros of the joints, the units, the frames, and \
-                 whether angles and positions of a row belong together.",
-                um(largest),
-                100.0 * MOST_SCATTER
-            ),
-            false if left.shown_by == ShownBy::StatedNoise => format!("{words}?"),
-            false => format!("{words}: {rms} µm rms per coordinate, up to {} µm.", um(largest)),
-        },
-        rms: left.rms,
-        along: covariate.variable,
-        sample_of: "row",
-        coordinates: &["x", "y", "z"],
-        samples: samples.collect(),
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::Vector3;
@@ -402,7 +175,8 @@ mod tests {
     use super::*;
     use crate::calibration::campaign::FileNames;
     use crate::diagnosis::Limitation;
-    use crate::diagnosis::calibration::apply;
+    use crate::diagnosis::calibration::{Applied, apply};
+    use crate::inference::{Discrepancy, ShownBy};
     use crate::units::UM;
 
     /// Along the order of the poses, m.
@@ -423,6 +197,37 @@ mod tests {
             let said = headline(&doubtful);
             assert!(said.starts_with("Possible, but held-out poses do not confirm this ("), "{said}");
             assert!(said.contains("): The base drifts") && !said.contains("falls"), "{said}");
+        });
+    }
+
+    /// A name that most searches do not find again, or with which held-out poses are predicted
+    /// hardly better, is said behind what nothing explains; one that they confirm, before it.
+    #[test]
+    fn what_is_hardly_confirmed_is_said_behind_what_remains() {
+        figures::tests::with_diagnosed(&drift, |_, found| {
+            let mut left = found.clone();
+            left.diagnosis.discrepancy = Some(Discrepancy {
+                candidate: None,
+                location: None,
+                shown_by: ShownBy::Repeats,
+                rms: 20.0 * UM,
+                shape: found.diagnosis.after.clone(),
+            });
+            let (first, behind) = ("The base drifts", "Repeated poses share an unexplained error");
+            let said = headline(&left);
+            assert!(said.starts_with(first) && said.contains(behind), "{said}");
+            let mut lost = left.clone();
+            lost.diagnosis.findings.iter_mut().for_each(|finding| finding.found_in_folds = Some((1, 5)));
+            let said = headline(&lost);
+            assert!(said.starts_with(behind), "{said}");
+            assert!(said.contains("Beside it, and perhaps a part of it: the base drifts"), "{said}");
+            // nothing else is left to be said first
+            let mut alone = lost;
+            alone.diagnosis.discrepancy = None;
+            assert!(headline(&alone).starts_with(first), "{}", headline(&alone));
+            let held_out = left.diagnosis.held_out.as_mut().unwrap();
+            held_out.errors_after = held_out.errors_before.clone() * 0.97;
+            assert!(headline(&left).starts_with(behind), "{}", headline(&left));
         });
     }
 

@@ -17,6 +17,9 @@ const MORE_THAN_STATED: f64 = 1.5;
 /// share of the error without any finding: that confirms hardly more than that something is there.
 const MUCH_WORSE: f64 = 2.0;
 const HARDLY_BETTER: f64 = 0.5;
+/// Findings that predict held-out data better by no more than this share of the error are said
+/// behind what nothing explains.
+const MINOR: f64 = 0.05;
 /// Correlation of neighbours in a run from which on it is said.
 const RESEMBLING: f64 = 0.3;
 /// So many rivals are said at once.
@@ -83,9 +86,24 @@ fn answer(subject: &Subject) -> String {
     }
     words += &worth(subject);
     match remains {
+        Some(remains) if are_minor(subject) => {
+            format!("{remains} Beside it, and perhaps a part of it: {}{nominal}", uncapital(&words))
+        }
         Some(remains) => format!("{words} {remains}{nominal}"),
         None => words + &nominal,
     }
+}
+
+/// True where what was named is hardly confirmed: held-out data are predicted hardly better with
+/// it, or most searches that leave a part of the data out do not find any of it again.
+fn are_minor(subject: &Subject) -> bool {
+    let findings = &subject.diagnosis.findings;
+    let is_lost =
+        |finding: &Finding| finding.found_in_folds.is_some_and(|(found, searches)| 2 * found < searches);
+    let is_hardly_better =
+        subject.errors.held_out.is_some_and(|(before, after)| after > (1.0 - MINOR) * before);
+    let is_named = findings.iter().any(|finding| finding.kind() == Kind::Mistake);
+    !is_named && (is_hardly_better || findings.iter().all(is_lost))
 }
 
 /// How the data scatter: noise only where somebody stated it; what repeats show; else of unknown

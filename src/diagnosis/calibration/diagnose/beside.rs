@@ -89,7 +89,7 @@ pub fn calibrated_beside<'c>(
         return Ok(None);
     }
     let loads = Loads::of(model, &hypothesis.terms);
-    let Some((beside, about)) = calibrated_with(prepared, &loads)? else { return Ok(None) };
+    let Some((beside, about)) = calibrated_with(model, &loads)? else { return Ok(None) };
     let recording = &model.campaign.measurements;
     let residual = |row: usize| -beside.deviations[row] * model.scale(row);
     let left = (0..recording.len()).flat_map(|row| <[f64; 3]>::from(residual(row)));
@@ -102,10 +102,9 @@ pub fn calibrated_beside<'c>(
 /// A robot that is calibrated with these loads, and the same with the rows as if there were none;
 /// `None` where that has not converged.
 pub fn calibrated_with<'c>(
-    prepared: &Prepared<'c>,
+    model: &CalibrationModel<'c>,
     loads: &Loads,
 ) -> Result<Option<(Calibration<'c>, Calibration<'c>)>> {
-    let model = &prepared.model;
     let (campaign, known) = (model.campaign, &model.calibration);
     let plain = Compensation::new(campaign, known.mode)?;
     let loaded = loads.beside(plain.clone(), campaign.rod.as_ref(), &known.setup.tool);

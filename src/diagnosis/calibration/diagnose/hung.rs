@@ -83,7 +83,7 @@ pub fn beside_hidden_masses<'c>(
         let mut sketched = sketch(&other.model, &other.evidence);
         // a load alone is another one than beside others
         let again = if is_alone {
-            calibrated_with(&other, &Loads::of(&other.model, &sketched.hypothesis.terms))?
+            calibrated_with(&other.model, &Loads::of(&other.model, &sketched.hypothesis.terms))?
         } else {
             None
         };
@@ -155,7 +155,7 @@ fn beside_one_load<'c>(
     for alone in &all {
         let is_beside = |term: &&Term| term == alone || !all.contains(term);
         let terms: Vec<Term> = hypothesis.terms.iter().filter(is_beside).cloned().collect();
-        found.extend(calibrated_with(prepared, &Loads::of(model, &terms))?);
+        found.extend(calibrated_with(model, &Loads::of(model, &terms))?);
     }
     Ok(found)
 }
@@ -171,8 +171,9 @@ fn beside_masses<'c>(prepared: &Prepared<'c>) -> Result<Vec<(Calibration<'c>, Ca
         if !is_possible(own) {
             continue;
         }
-        let with =
-            |mass: f64| calibrated_with(prepared, &Loads { hung: vec![(own, mass)], displaced: Vec::new() });
+        let with = |mass: f64| {
+            calibrated_with(&prepared.model, &Loads { hung: vec![(own, mass)], displaced: Vec::new() })
+        };
         let left = |mass: f64| -> Result<f64> {
             Ok(with(mass)?
                 .map_or(f64::INFINITY, |beside| beside.0.deviations.iter().map(|d| d.norm_squared()).sum()))

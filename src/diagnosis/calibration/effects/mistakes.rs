@@ -81,8 +81,8 @@ pub static OFFSET_MISTAKE: Effect = Effect {
 /// Angles and positions that do not belong together.
 pub static ROW_MISTAKE: Effect = Effect {
     name: "row_mistake",
-    summary: "positions stand some rows away from their angles, or a column beside the others",
-    formula: "position (or number of a column) of row i = recorded one of row i + rows",
+    summary: "positions stand some rows away from their angles, or in reverse order, or a column beside the others",
+    formula: "position (or number of a column) of row i = recorded one of row i + rows, or of row n − i",
     parameters: &[(&["rows"], "how many rows further down a row's position stands")],
     needs: "poses that differ from row to row",
     cause: "rows displaced",

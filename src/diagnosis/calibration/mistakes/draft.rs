@@ -58,6 +58,8 @@ pub(super) enum DraftChange {
     Seen(Matrix3<f64>),
     /// The positions of row i are those that stand in row i + k; with the clamps or without.
     Rows { by: isize, with_clamps: bool },
+    /// The positions stand in reverse order; with the clamps or without.
+    Reversed { with_clamps: bool },
     /// Two clamps or sockets exchanged.
     Groups(usize, usize),
     /// Other frames of clamps.
@@ -240,6 +242,7 @@ impl Draft {
                 self.positions_changed = matrix * self.positions_changed;
             }
             DraftChange::Rows { by, with_clamps } => self.displace(*by, *with_clamps),
+            DraftChange::Reversed { with_clamps } => self.reverse(*with_clamps),
             DraftChange::Groups(a, b) => {
                 for group in &mut self.group {
                     *group = if *group == *a {

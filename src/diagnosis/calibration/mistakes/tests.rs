@@ -1,6 +1,9 @@
 mod fixtures;
 mod held;
+mod moved_base;
 mod parts;
+mod rows;
+mod spots;
 
 use nalgebra::Vector3;
 
@@ -249,24 +252,6 @@ fn a_validation_from_another_place_is_not_mirrored_because_that_is_nearer() {
 }
 
 #[test]
-fn positions_some_rows_away_from_their_angles() {
-    for by in [1, -2] {
-        let mut wrong = tracked(60, 7);
-        let count = wrong.measurements.len() as isize;
-        let there = |row: isize| (row - by).rem_euclid(count) as usize;
-        let old = points(&mut wrong).clone();
-        for (row, point) in points(&mut wrong).iter_mut().enumerate() {
-            *point = old[there(row as isize)];
-        }
-        let mended = mended(&wrong);
-        assert_eq!(mended.found[0].effect.name, "row_mistake");
-        assert_eq!(mended.found[0].estimates[0].value, by as f64);
-        // the rows whose positions are lost are left out
-        assert_eq!(mended.campaign.measurements.len() as isize, count - by.abs());
-    }
-}
-
-#[test]
 fn clamps_exchanged_and_frames_in_another_convention() {
     let campaign = tx90();
     let mut wrong = campaign.clone();
@@ -373,24 +358,6 @@ fn two_mistakes_at_once() {
     let mut all = found(&wrong);
     all.sort();
     assert_eq!(all, [one("offset_mistake", "q5_deg"), one("sign_mistake", "q3_deg")].concat());
-}
-
-#[test]
-fn a_base_that_moved_is_found_at_its_row_and_becomes_a_station() {
-    for (row, way, angle) in [(31, 0.05, 1.0 * DEG), (20, 0.5, 10.0 * DEG), (42, 1.5, 40.0 * DEG)] {
-        let mut wrong = tracked(60, 7);
-        let motion = Pose::from_xyz_rpy([way, 0.0, 0.0], [angle, 0.0, 0.0]);
-        points(&mut wrong)[row..].iter_mut().for_each(|point| *point = motion.point(point));
-        let mended = mended(&wrong);
-        assert_eq!(mended.found.len(), 1);
-        assert_eq!(mended.found[0].effect.name, "base_shift");
-        assert_eq!(mended.found[0].location.to_string(), format!("after pose {row}"));
-        let calibrated = calibrate(&mended.campaign, Mode::None, &Options::default()).unwrap();
-        let rms = calibrated.rms();
-        assert!((rms - 30.0 * UM * 3f64.sqrt()).abs() < 20.0 * UM, "{rms}");
-        assert!(!suspected(&wrong, Mode::None, &Neighbours::default()).unwrap().is_empty());
-        assert!(suspected(&mended.campaign, Mode::None, &Neighbours::default()).unwrap().is_empty());
-    }
 }
 
 /// A tip 36 mm beside the last axis: with that joint's zero off by 90° it may stand elsewhere on

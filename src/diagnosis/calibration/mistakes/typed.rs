@@ -17,9 +17,13 @@ impl Meant {
     }
 }
 
-/// Ln of how much rarer a digit is that is another one, and one that is missing or too many.
+/// Ln of how much rarer a digit is that is another one, one that is missing or too many, and one
+/// that was counted too far, with what is carried.
 const WRONG_DIGIT: f64 = -1.0;
 const LENGTH: f64 = -2.0;
+const CARRIED: f64 = -2.0;
+/// Farthest that a digit is counted too far.
+const COUNTED: i32 = 2;
 /// Farthest that a decimal point is displaced.
 const FARTHEST: i32 = 3;
 /// More decimals are not looked for in a column.
@@ -81,6 +85,14 @@ pub fn meant(value: f64, decimals: usize) -> Vec<Meant> {
             add(joined(wrong), "one of its digits is wrong", WRONG_DIGIT);
         }
     }
+    // 109 for 99: the tens were counted one too far
+    for place in 0..places.len() {
+        let unit = 10f64.powi((places.len() - 1 - place) as i32 - decimals as i32);
+        for count in (-COUNTED..=COUNTED).filter(|count| *count != 0) {
+            let counted = value + f64::from(count) * unit;
+            add(format!("{counted:.decimals$}"), "one of its digits was counted too far", CARRIED);
+        }
+    }
     let point = letters.iter().position(|letter| *letter == '.').unwrap_or(letters.len());
     for place in 0..point {
         let mut shorter = letters.clone();
@@ -119,6 +131,13 @@ mod tests {
         assert_eq!(why("-145.32"), Some("it lacks a digit"));
         assert_eq!(why("-5.32"), Some("it has a digit too many"));
         assert_eq!(why("-45.32"), None);
+        // with what is carried; else it is a wrong digit
+        assert_eq!(why("-65.32"), Some("one of its digits is wrong"));
+        let all = meant(-109.05, 2);
+        let why = |text: &str| all.iter().find(|meant| meant.text == text).map(|meant| meant.why);
+        assert_eq!(why("-99.05"), Some("one of its digits was counted too far"));
+        assert_eq!(why("-89.05"), Some("one of its digits was counted too far"));
+        assert_eq!(why("-79.05"), None);
     }
 
     #[test]

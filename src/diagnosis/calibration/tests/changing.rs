@@ -50,6 +50,32 @@ fn a_drive_that_softens_is_said_to_follow_its_torque() {
     assert!(names.is_empty() && place.ends_with(" × torque of joint 2"), "{names:?} {place}");
 }
 
+/// A drive that warms while the robot works, cools and warms again is no two slips of the joint;
+/// one that slips is.
+#[test]
+fn a_zero_that_goes_its_own_way_is_no_two_slips() {
+    let campaign = clamps(24);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let rows = campaign.measurements.len();
+    let mut warm = 0.0;
+    let heat: Vec<f64> = (0..rows)
+        .map(|row| {
+            let works = f64::from(u8::from(3 * row / rows != 1));
+            warm += 8.0 / rows as f64 * (works - warm);
+            warm
+        })
+        .collect();
+    let turned = |zero: &dyn Fn(usize) -> f64| {
+        let by = |row: usize| context.configurations[row].tip_jacobian[2] * (150e-6 * zero(row));
+        diagnosed(&recorded(&campaign, &by, 20.0 * UM, 8), Mode::Fea)
+    };
+    let (names, _, place) = turned(&|row| heat[row]);
+    assert!(names.is_empty() && place.ends_with("zero of joint 3"), "{names:?} {place}");
+    let (names, left, _) = turned(&|row| f64::from(u8::from(2 * row > rows)));
+    assert_eq!((names, left), (vec!["joint_shift"], None));
+}
+
 /// A tool that slips when gravity presses it by half of its weight, and stays there.
 #[test]
 fn a_tool_that_sticks_follows_what_it_was_last_pressed_to() {

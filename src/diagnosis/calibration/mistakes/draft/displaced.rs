@@ -84,4 +84,12 @@ impl Draft {
         let group = kept.iter().map(|row| self.group[if with_clamps { there(row) } else { *row }]).collect();
         *self = Draft { seen, group, ..self.part(&kept) };
     }
+
+    /// All positions in reverse order, the joint values where they are.
+    pub fn reverse(&mut self, with_clamps: bool) {
+        self.seen.reverse();
+        if with_clamps {
+            self.group.reverse();
+        }
+    }
 }

@@ -148,6 +148,16 @@ impl List<'_> {
                     if count == 1 { 0.0 } else { UNUSUAL } + if with_clamps { UNUSUAL } else { 0.0 };
             }
         }
+        // a few rows say nothing of the order of all
+        let whole = if self.is_of_rows { 0..0 } else { 0..1 + usize::from(has_clamps) };
+        for with_clamps in whole.map(|with| with == 1) {
+            let what = if with_clamps { "clamp, x_mm, y_mm and z_mm" } else { "x_mm, y_mm and z_mm" };
+            let place = if with_clamps { "clamp, x_mm, y_mm, z_mm" } else { "x_mm, y_mm, z_mm" };
+            let cure = format!("Turn the order of the rows of {what} round");
+            let why = "the first position belongs to the last angles";
+            let change = DraftChange::Reversed { with_clamps };
+            self.add(&ROW_MISTAKE, Key::new(place), change, &cure, why).log_prior = UNUSUAL;
+        }
     }
 }
 

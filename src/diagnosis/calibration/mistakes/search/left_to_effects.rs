@@ -33,6 +33,7 @@ impl MistakeSearch<'_> {
         ];
         let displaced = self.displaced(changed, from).into_iter();
         let displaced = displaced.chain(self.moved_fixtures(changed, from)).chain(self.drifts(changed, from));
+        let displaced = displaced.chain(self.knocked_clamps(changed, from));
         small.chain(displaced).chain(others.into_iter().flatten()).fold(f64::NEG_INFINITY, f64::max)
     }
 
@@ -50,7 +51,7 @@ impl MistakeSearch<'_> {
                     .map(|(clamp, _)| *clamp)
                     .collect(),
             ),
-            Some(DraftChange::Moved(_) | DraftChange::Seen(_)) => {}
+            Some(DraftChange::Moved(_) | DraftChange::Seen(_) | DraftChange::Body(..)) => {}
             _ => return Vec::new(),
         }
         let displaced = turned.into_iter().filter(|turned| !turned.is_empty()).filter_map(|turned| {

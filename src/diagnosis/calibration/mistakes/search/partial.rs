@@ -4,7 +4,7 @@
 //! by themselves too: one of them is free of it. About each fit every change is tried on every row
 //! (`part.rs`); the best few stretches become states, which the search compares with all others.
 
-use super::super::draft::{Draft, DraftChange, Rows};
+use super::super::draft::{DraftChange, Rows};
 use super::super::quick::{Fit, Worthwhile, fit, fit_from};
 use super::part::{ELSEWHERE, Reference, most, within};
 use super::{FittedDraft, MistakeSearch, SearchStep};
@@ -12,9 +12,23 @@ use crate::parallel::in_parallel;
 use crate::statistics::median;
 use crate::units::DEG;
 
-/// Windows of the rows that are fitted by themselves, as shares of them.
-const WINDOWS: [(f64, f64); 7] =
-    [(0.0, 0.5), (0.5, 1.0), (0.0, 0.67), (0.33, 1.0), (0.0, 0.34), (0.33, 0.67), (0.66, 1.0)];
+/// Windows of the rows that are fitted by themselves, as shares of them; one that ends before it
+/// begins goes on with the first rows.
+///
+/// Clamps are visited one after another: where the rows between are spoilt, one end alone has seen
+/// a single clamp, which says nothing of where the base stands. Both ends together have seen two.
+const WINDOWS: [(f64, f64); 10] = [
+    (0.0, 0.5),
+    (0.5, 1.0),
+    (0.0, 0.67),
+    (0.33, 1.0),
+    (0.0, 0.34),
+    (0.33, 0.67),
+    (0.66, 1.0),
+    (0.67, 0.33),
+    (0.75, 0.25),
+    (0.83, 0.17),
+];
 /// Fewest rows that are so many scales out before parts are looked at; or a window that scatters so
 /// much less than all.
 const FEWEST: usize = 3;
@@ -193,12 +207,9 @@ impl MistakeSearch<'_> {
     /// The fit of all rows, then those of windows.
     fn starts(&self, from: &FittedDraft) -> Vec<Fit> {
         let body = &self.bodies[from.thin.body];
-        let count = from.thin.len() as f64;
-        let window = |(first, last): (f64, f64)| -> Draft {
-            let rows: Vec<usize> = ((first * count) as usize..(last * count) as usize).collect();
-            from.thin.part(&rows)
-        };
-        let of_windows = in_parallel(WINDOWS.len(), |k| fit(&window(WINDOWS[k]), body, Worthwhile::ANY));
+        let of_windows = in_parallel(WINDOWS.len(), |k| {
+            fit(&from.thin.part(&within_window(WINDOWS[k], from.thin.len())), body, Worthwhile::ANY)
+        });
         std::iter::once(from.fit.clone()).chain(of_windows.into_iter().flatten()).collect()
     }
 
@@ -214,5 +225,25 @@ impl MistakeSearch<'_> {
             (None, None) => return None,
         };
         Some(self.scored(steps.to_vec(), thin, fit))
+    }
+}
+
+/// The rows of a window, of so many.
+fn within_window((first, last): (f64, f64), count: usize) -> Vec<usize> {
+    let [first, last] = [first, last].map(|share| (share * count as f64) as usize);
+    match first < last {
+        true => (first..last).collect(),
+        false => (0..last).chain(first..count).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::within_window;
+
+    #[test]
+    fn a_window_that_goes_round() {
+        assert_eq!(within_window((0.25, 0.75), 8), [2, 3, 4, 5]);
+        assert_eq!(within_window((0.75, 0.25), 8), [0, 1, 6, 7]);
     }
 }

@@ -1,5 +1,7 @@
 //! What may have happened to one row, as a list.
 
+use std::f64::consts::PI;
+
 use super::super::draft::{Cell, Draft, DraftChange, Rows};
 use super::super::moves::PossibleMistake;
 use super::super::names::{AXES, cell, column, place, pose_name};
@@ -11,6 +13,9 @@ use crate::diagnosis::calibration::effects::mistakes::TYPING_MISTAKE;
 use crate::inference::{Effect, Estimate, Key};
 use crate::robot::Motion;
 use crate::units::{DEG, MM};
+
+/// A joint of which nothing is known turns as far as its column shows, or this, rad.
+const TURN: f64 = 2.0 * PI;
 
 /// What may have happened to a row.
 pub struct Suspect {
@@ -47,6 +52,9 @@ impl MistakeSearch<'_> {
             let recorded = tidy(recorded / unit);
             for Meant { text, why, log_prior } in meant(recorded, places) {
                 let value = text.parse::<f64>().unwrap_or(f64::NAN);
+                if !self.is_reached(draft, own, value * unit) {
+                    continue;
+                }
                 all.push(Suspect {
                     effect: &TYPING_MISTAKE,
                     change: DraftChange::Number { row, cell: own, value: value * unit },
@@ -66,6 +74,16 @@ impl MistakeSearch<'_> {
             add(Cell::Axis(axis), name.into(), MM, draft.seen[at][axis], columns[count + axis]);
         }
         all
+    }
+
+    /// False of an angle that a joint does not reach: a whole turn more brings a row home as well.
+    fn is_reached(&self, draft: &Draft, cell: Cell, value: f64) -> bool {
+        let Cell::Joint(joint) = cell else { return true };
+        let own = &self.bodies[draft.body].robot.joints[joint];
+        let column = draft.joints.iter().skip(joint).step_by(draft.joint_count);
+        let farthest = column.fold(TURN, |most: f64, q| most.max(q.abs()));
+        own.motion == Motion::Prismatic
+            || own.limits.map_or(value.abs() <= farthest, |[low, high]| (low..=high).contains(&value))
     }
 
     /// What may happen to many rows, at one.

@@ -2,14 +2,14 @@
 
 use super::*;
 
-fn in_rows(campaign: &Campaign, rows: std::ops::Range<usize>, change: impl Fn(&mut [f64])) -> Campaign {
+pub fn in_rows(campaign: &Campaign, rows: std::ops::Range<usize>, change: impl Fn(&mut [f64])) -> Campaign {
     let mut wrong = campaign.clone();
     wrong.measurements.joint_values.chunks_mut(6).skip(rows.start).take(rows.len()).for_each(change);
     wrong
 }
 
 /// The one finding, its cure, and the campaign that was meant.
-fn only(campaign: &Campaign) -> (&'static str, String, Campaign) {
+pub fn only(campaign: &Campaign) -> (&'static str, String, Campaign) {
     let mended = mended(campaign);
     let cures: Vec<&str> = mended.found.iter().map(|finding| finding.description.observed.as_str()).collect();
     let [finding] = &mended.found[..] else { panic!("{cures:?}") };
@@ -90,6 +90,20 @@ fn one_number_that_was_typed_wrongly() {
     assert_eq!(effect, "typing_mistake");
     assert!(cure.ends_with(" as q2_deg of pose 23"), "{cure}");
     assert!((meant.measurements.joint_values[at] - right.measurements.joint_values[at]).abs() < 1e-9);
+    // ten degrees too many, with what is carried; and no whole turn more, which brings it home too
+    for too_many in [10.0, 20.0] {
+        let at = 6 * 22 + 4;
+        let mut right = right.clone();
+        right.measurements.joint_values[at] = 99.05 * DEG;
+        let angles = right.measurements.joint_values.clone();
+        points(&mut right)[22] = Pose::from_xyz_rpy(BASE.0, BASE.1)
+            .point(&robot(1.0, 7).flange_at(&angles[6 * 22..][..6]).point(&TOOL.into()));
+        let mut wrong = right.clone();
+        wrong.measurements.joint_values[at] += too_many * DEG;
+        let (_, cure, meant) = only(&wrong);
+        assert!(cure.contains("as q5_deg of pose 23"), "{cure}");
+        assert!((meant.measurements.joint_values[at] - 99.05 * DEG).abs() < 1e-9, "{cure}");
+    }
     // the point of another pose, to the last digit
     let mut wrong = right.clone();
     let other = points(&mut wrong)[30];

@@ -5,5 +5,6 @@ pub mod chronicle;
 pub mod columns;
 pub mod datum;
 pub mod evidence;
+pub mod resolution;
 mod rezeroed;
 pub mod spread;

@@ -25,8 +25,8 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// The best hypothesis of a model, what it leaves unexplained included: that of its diagnosis, where
-    /// this is the better one.
+    /// The best hypothesis of a model, what it leaves unexplained included: that of its diagnosis,
+    /// where this is the better one.
     pub fn new(model: &dyn ForwardModel, evidence: &Evidence, found: &Diagnosis) -> Compared {
         let (known, noise) = (&found.hypothesis.terms, found.noise);
         let own = plain(evidence);

@@ -16,6 +16,7 @@ use rodcal_base::units::{DEG, MM, STANDARD_GRAVITY, UM};
 /// How often one sensor is worse than the others, and how many times as much it scatters at most.
 const ONE_WORSE: f64 = 0.3;
 const MOST_WORSE: f64 = 8.0;
+const WORST_SHARE: f64 = 0.03;
 
 /// What a protocol must have to carry an effect.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -101,7 +102,7 @@ pub fn draw(needs: Needs, residuals: &[f64], random: &mut Random) -> (Bench, Noi
     }
     let times = if happens(random, TWICE.1) { TWICE.0 } else { 1.0 };
     bench.actual = Actual::drawn(&bench.drawing, &bench.protocol.stations(), times, random);
-    let noise = noise(residuals, random);
+    let noise = worse_at_most(noise(residuals, random), &bench);
     let steps: Vec<f64> = [0.1, 1.0, 2.0, 5.0, 10.0]
         .into_iter()
         .map(|step| step * UM)
@@ -109,6 +110,16 @@ pub fn draw(needs: Needs, residuals: &[f64], random: &mut Random) -> (Bench, Noi
         .collect();
     bench.protocol.quantum = one_of(random, &steps, 0.1 * UM);
     (bench, noise, times)
+}
+
+/// A sensor is worse than others, where there are some, and nobody reads one that scatters more than
+/// this share of what it shows.
+fn worse_at_most(noise: Noise, bench: &Bench) -> Noise {
+    let cells = bench.protocol.cells();
+    let is_alone = cells.iter().all(|cell| cell.channel == cells[0].channel);
+    let largest = bench.readings(&[]).iter().fold(0.0, |most: f64, reading| most.max(reading.abs()));
+    let most = if is_alone { 1.0 } else { (WORST_SHARE * largest / noise.sd).max(1.0) };
+    Noise { times: noise.times.map(|times| times.min(most)), ..noise }
 }
 
 /// Normal as often as heavy-tailed, some of it correlated along the run, now and then with a sensor

@@ -14,7 +14,7 @@ use super::part::Part;
 use super::search::ODDS;
 use crate::diagnosis::rig::recording::columns::{rows_of, trial_name};
 use crate::diagnosis::rig::recording::datum::Datum;
-use crate::diagnosis::rig::recording::evidence::resolution;
+use crate::diagnosis::rig::recording::resolution::resolution;
 use crate::inference::Key;
 use crate::statistics::median;
 

@@ -7,7 +7,7 @@ use super::lines::{Line, lines};
 use super::part::Part;
 use crate::diagnosis::rig::recording::columns::{column, rows_between};
 use crate::diagnosis::rig::recording::datum::Datum;
-use crate::diagnosis::rig::recording::evidence::resolution;
+use crate::diagnosis::rig::recording::resolution::resolution;
 use crate::diagnosis::rig::recording::spread::scatter_of;
 use crate::inference::{Estimate, Key, Quantity};
 use crate::spatial::Axis;
@@ -216,8 +216,8 @@ fn trembles(data: &[Datum], own: &[usize]) -> bool {
 }
 
 /// How far beyond a limit the farthest of some readings would lie, where they show that they are
-/// cut off there; `beyond` is what is expected of each, with the scatter about their lines, and that
-/// from reading to reading.
+/// cut off there; `beyond` is what is expected of each, with the scatter about their lines, and
+/// that from reading to reading.
 fn cut_off(beyond: &[f64], [scatter, noise]: [f64; 2], limit: f64, step: f64) -> Option<f64> {
     let (low, high) = range(beyond);
     let mean = beyond.iter().sum::<f64>() / beyond.len() as f64;

@@ -4,12 +4,12 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::datum::Datum;
+use super::resolution::resolution;
 use super::spread;
 use crate::diagnosis::rig::numbering::numbered;
 use crate::inference::{Covariate, Evidence, Variable};
 use crate::rig::readings::RigHeader;
 use crate::spatial::Axis;
-use crate::units::UM;
 
 /// Folds of a cross-validation: fewer cost less to run, more keep more to learn from.
 const MOST_FOLDS: usize = 5;
@@ -144,26 +144,6 @@ fn levels(data: &[Datum]) -> Vec<usize> {
     data.iter().map(level).collect()
 }
 
-/// The step that all offsets are multiples of, m: 10, 5, 2, 1, 0.5 µm and so on; 0 where they show
-/// none.
-pub fn resolution<'a>(data: impl IntoIterator<Item = &'a Datum>) -> f64 {
-    const COARSEST: i32 = 1;
-    const FINEST: i32 = -6;
-    /// The file's decimals are not exact in binary, and the more steps the less so.
-    const INEXACT: f64 = 1e-6;
-    let is_multiple = |datum: &Datum, step: f64| {
-        let steps = datum.measured / UM / step;
-        (steps - steps.round()).abs() <= INEXACT
-    };
-    let steps = (FINEST..=COARSEST).rev().flat_map(|decade| {
-        let mantissas: &[f64] = if decade == COARSEST { &[1.0] } else { &[5.0, 2.0, 1.0] };
-        mantissas.iter().map(move |mantissa| mantissa * 10f64.powi(decade))
-    });
-    let data: Vec<&Datum> = data.into_iter().collect();
-    let mut steps = steps.filter(|&step| data.iter().all(|d| is_multiple(d, step)));
-    steps.next().map_or(0.0, |step| step * UM)
-}
-
 /// What a datum has of a covariate.
 type Value<'a> = &'a dyn Fn(&Datum) -> Option<f64>;
 
@@ -238,24 +218,6 @@ mod tests {
         assert_eq!(of_loads.fold[0], of_loads.fold[8]);
         let two_loads = evidence("axis,load_n,dy_um\ny,1,1\ny,2,2\ny,1,1\ny,2,2\n");
         assert_eq!(two_loads.fold, [0, 1, 2, 0]);
-    }
-
-    #[test]
-    fn the_resolution_is_the_step_of_the_display() {
-        let resolution =
-            |a: &str, b: &str| evidence(&format!("axis,load_n,dy_um\ny,1,{a}\ny,2,{b}\n")).resolution / UM;
-        for (a, b, step) in [
-            ("50", "-110", 10.0),
-            ("50", "105", 5.0),
-            ("50", "-102", 2.0),
-            ("50", "101", 1.0),
-            ("0.5", "101", 0.5),
-            ("38709.346", "0.2", 0.002),
-            ("0", "0", 10.0),
-            ("3.14159265358979", "1", 0.0),
-        ] {
-            assert!((resolution(a, b) - step).abs() < 1e-12, "{a} {b}");
-        }
     }
 
     #[test]

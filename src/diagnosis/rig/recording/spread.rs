@@ -18,7 +18,7 @@
 use std::collections::BTreeMap;
 
 use super::datum::Datum;
-use super::evidence::resolution;
+use super::resolution::resolution;
 use crate::diagnosis::rig::numbering::numbered;
 use crate::rig::readings::{Axis, RigHeader};
 

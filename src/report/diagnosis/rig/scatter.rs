@@ -48,3 +48,29 @@ fn name(datum: &Datum) -> String {
         Some(_) => "the measured loads".to_owned(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::rig::diagnose;
+    use crate::rig::readings::Readings;
+    use crate::statistics::Random;
+
+    /// A load cell of 0.05 N beside sensors of 0.3 µm, of a rod of 50 µm/N; without its file.
+    #[test]
+    fn a_load_cell_is_told_in_newtons_and_the_others_in_micrometres() {
+        let mut random = Random::seeded(4, 0);
+        let mut text = "# driven = \"displacement\"\naxis,load_n,dx_um,dy_um,dz_um\n".to_owned();
+        for load in [2, 4, 6, 8, 6, 4, 2, 1].repeat(4) {
+            let [x, y, z] = [0.0, 50.0, 0.0].map(|c| c * f64::from(load) + 0.3 * random.normal());
+            let measured = f64::from(load) + 0.05 * random.normal();
+            text += &format!("y,{measured:.4},{x:.2},{y:.2},{z:.2}\n");
+        }
+        let found = diagnose(&Readings::from_text("f", &text).unwrap(), None).unwrap();
+        let Uneven { words, sensors } = uneven(&found).unwrap();
+        let start = "Not all sensors scatter alike, and each counts as it does: the measured loads by 0.0";
+        assert!(words.starts_with(start) && words.contains(" N, the others by 0."), "{words}");
+        let noise = sensors[0]["noise_n"].as_f64().unwrap();
+        assert!((0.03..0.08).contains(&noise) && sensors[0]["sensor"] == "the measured loads", "{sensors}");
+    }
+}

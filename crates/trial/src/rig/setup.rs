@@ -112,8 +112,8 @@ pub fn draw(needs: Needs, residuals: &[f64], random: &mut Random) -> (Bench, Noi
     (bench, noise, times)
 }
 
-/// A sensor is worse than others, where there are some, and nobody reads one that scatters more than
-/// this share of what it shows.
+/// A sensor is worse than others, where there are some, and nobody reads one that scatters more
+/// than this share of what it shows.
 fn worse_at_most(noise: Noise, bench: &Bench) -> Noise {
     let cells = bench.protocol.cells();
     let is_alone = cells.iter().all(|cell| cell.channel == cells[0].channel);

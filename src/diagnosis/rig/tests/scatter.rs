@@ -7,8 +7,8 @@ use crate::statistics::Random;
 
 const WORSE: f64 = 6.0;
 
-/// Four trials along x, y and z; `dz` has so many times the noise of the others, 1 µm, and a display
-/// of this step, µm.
+/// Four trials along x, y and z; `dz` has so many times the noise of the others, 1 µm, and a
+/// display of this step, µm.
 fn recorded(seed: u64, times: f64, step: f64) -> Readings {
     let (c, mut random) = (compliance(&rod("")), Random::seeded(seed, 0));
     let mut text = "trial,axis,load_n,phase,dx_um,dy_um,dz_um\n".to_owned();

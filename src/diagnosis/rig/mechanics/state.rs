@@ -189,7 +189,7 @@ impl<'a> State<'a> {
     pub fn pull_beside(&self, pulls: &mut [Pull], data: &[Datum], course: &Course, met: &[(usize, Met)]) {
         let met: HashMap<usize, Met> = met.iter().copied().collect();
         for &(i, imposed) in &course.beside {
-            let (datum, met) = (&data[i], met[&imposed]);
+            let (datum, Some(met)) = (&data[i], met.get(&imposed)) else { continue };
             let friction = self.friction.on(datum) * met.contact * met.friction;
             let force = datum.signed_load() + self.load_offset.on(datum) - friction;
             pulls[i] = self.pull(i, datum, Some(Hung { force, side: 0.0 }));

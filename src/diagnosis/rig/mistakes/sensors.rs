@@ -164,7 +164,9 @@ pub(super) fn saturated(data: &[Datum], lines: &[Line], by_rod: Option<&Expected
             let of_rod = by_rod.and_then(|rod| expected_of_rod(data, &at, &ends, lines, rod));
             let step = step_of(data, &own);
             // what a line leaves may be that it is bent, or slipped: it is no noise
-            let others: Vec<&Datum> = own.iter().filter(|i| !ends.contains(i)).map(|&i| &data[i]).collect();
+            let without: HashSet<usize> = ends.iter().copied().collect();
+            let others: Vec<&Datum> =
+                own.iter().filter(|i| !without.contains(i)).map(|&i| &data[i]).collect();
             let noise = scatter_of(&others).unwrap_or(f64::INFINITY);
             let beyond = |expected: Vec<(f64, f64)>| {
                 let beyond = expected.iter().map(|(value, _)| side * value - limit).collect::<Vec<_>>();

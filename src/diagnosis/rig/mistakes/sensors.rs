@@ -77,6 +77,8 @@ pub(super) fn stuck(data: &[Datum], lines: &[Line], expected: Option<&Expected>)
         let mut others = (0..lines.len()).filter(|&k| lines[k].channel != channel).peekable();
         is_scale_right && others.peek().is_some() && others.all(is_right)
     };
+    // what the displays can show of it
+    let step = resolution(data);
     let mut found = Vec::new();
     for channel in Axis::ALL {
         let is_read = |k: &usize| lines[*k].channel == channel && lines[*k].has_slope;
@@ -101,7 +103,7 @@ pub(super) fn stuck(data: &[Datum], lines: &[Line], expected: Option<&Expected>)
                     let moves = line.fit.slope.abs();
                     (is_same || (moves < 4.0 * line.fit.error && is_right_else(channel)))
                         && moves < MOVES * expected[k].abs()
-                        && deflections[k] > TIMES_SCATTER * line.fit.scatter
+                        && deflections[k] > (TIMES_SCATTER * line.fit.scatter).max(DIGITS * step)
                 }
                 None => is_same && line.data.len() >= FROZEN && values[0] != 0.0,
             }

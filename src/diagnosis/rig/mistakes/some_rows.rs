@@ -57,15 +57,15 @@ impl Mended {
     pub(super) fn trials(&mut self) -> Result<()> {
         let data = datum::all(&self.readings.rows);
         let all = lines(&data, |_| true);
-        let trials = trials::Table::of(&data, &all);
-        if trials.is_alike() {
-            return Ok(());
-        }
         let by_rod = self.expected(&all)?;
         let by_rod: Option<Vec<f64>> =
             by_rod.map(|rod| rod.slopes.iter().map(|slope| slope / rod.scale).collect());
+        let trials = trials::Table::of(&data, &all, by_rod.as_deref());
+        if trials.is_alike() {
+            return Ok(());
+        }
         let possible = labels::in_trials(&Labels::of(&all, self.readings.load_column));
-        for found in trials.found(&possible, by_rod.as_deref()) {
+        for found in trials.found(&possible) {
             let mut rows: Vec<usize> = found.part.data.iter().map(|&i| data[i].row - 1).collect();
             rows.sort_unstable();
             rows.dedup();

@@ -11,6 +11,8 @@
 //! s the slope of a line in one trial, with its error; r that of the line which the change makes of
 //! it, in the trials that are right; r_max the largest under the same load. The scatter about the
 //! lines counts too: it is that of the others times the factor on the readings.
+//!
+//! Trials at different stations have no line in common: there the rod file stands between them.
 
 use super::super::effects::mistakes::SIGN_MISTAKE;
 use super::super::numbering::numbered;
@@ -40,6 +42,11 @@ const OFF: f64 = 0.05;
 const LEFT: f64 = 0.02;
 /// What a rod file may leave of a class that it confirms.
 const CONFIRMED: f64 = 0.1;
+/// Lines of one sensor at two stations, each over that of the rod file, are alike within this
+/// ratio: a soft clamp shows near the root first.
+const ELSEWHERE: f64 = 3.0;
+/// How well a rod file that is confirmed elsewhere knows a line.
+const BY_FILE: f64 = 0.15;
 
 /// A mistake in the rows of some trials.
 pub(super) struct InTrials {
@@ -69,6 +76,7 @@ impl Cell {
 }
 
 /// A line in the trials that are right: m/N, m/N and m.
+#[derive(Clone)]
 struct Right {
     slope: f64,
     error: f64,
@@ -83,14 +91,15 @@ pub(super) struct Table<'a> {
     trial: Vec<usize>,
     /// By trial and line.
     cells: Vec<Vec<Option<Cell>>>,
+    /// The slope of each line by the rod file, m/N.
+    by_rod: Option<&'a [f64]>,
     /// Trials that agree in all lines which they have in common.
     classes: Vec<Vec<usize>>,
 }
 
 impl<'a> Table<'a> {
-    /// What is written otherwise in some trials than in the others, by one of these `mistakes`;
-    /// `by_rod` are the slopes of the rod file, m/N.
-    pub fn found(&self, mistakes: &[PossibleMistake], by_rod: Option<&[f64]>) -> Vec<InTrials> {
+    /// What is written otherwise in some trials than in the others, by one of these `mistakes`.
+    pub fn found(&self, mistakes: &[PossibleMistake]) -> Vec<InTrials> {
         let classes = &self.classes;
         if classes.len() < 2 || classes.len() > MOST_CLASSES {
             return Vec::new();
@@ -103,12 +112,14 @@ impl<'a> Table<'a> {
                 _ => Some(class),
             })
         };
-        let is_confirmed = |class: &usize| by_rod.is_some_and(|rod| self.is_confirmed(&classes[*class], rod));
+        let is_confirmed =
+            |class: &usize| self.by_rod.is_some_and(|rod| self.is_confirmed(&classes[*class], rod));
         let confirmed = largest(&mut (0..classes.len()).filter(is_confirmed));
         let Some(right) = confirmed.or_else(|| largest(&mut (0..classes.len()))) else { return Vec::new() };
-        let reference = self.lines_of(&classes[right]);
+        let shown = self.lines_of(&classes[right]);
+        let reference = if confirmed.is_some() { self.completed(&shown) } else { shown.clone() };
         let others = classes.iter().enumerate().filter(|(class, _)| *class != right);
-        others.filter_map(|(_, class)| self.explained(class, &reference, mistakes)).collect()
+        others.filter_map(|(_, class)| self.explained(class, &reference, &shown, mistakes)).collect()
     }
 
     /// True where all trials agree with each other.
@@ -116,8 +127,8 @@ impl<'a> Table<'a> {
         self.classes.len() < 2
     }
 
-    /// Of `data` and the `lines` that they are on.
-    pub fn of(data: &'a [Datum], lines: &'a [Line]) -> Table<'a> {
+    /// Of `data` and the `lines` that they are on; `by_rod` are the slopes of the rod file, m/N.
+    pub fn of(data: &'a [Datum], lines: &'a [Line], by_rod: Option<&'a [f64]>) -> Table<'a> {
         let visit = visits(data);
         let trial = numbered(data.iter().zip(&visit).map(|(datum, visit)| {
             let is_named = datum.trial.is_some();
@@ -134,7 +145,7 @@ impl<'a> Table<'a> {
                 cells[k] = group.has_slope.then_some(Cell { fit: group.fit, load });
             }
         }
-        let mut table = Table { data, lines, trial, cells, classes: Vec::new() };
+        let mut table = Table { data, lines, trial, cells, by_rod, classes: Vec::new() };
         table.classes = table.classes();
         table
     }
@@ -173,10 +184,48 @@ impl<'a> Table<'a> {
         (0..self.lines.len()).all(|k| {
             let Some(own) = self.cells[trial][k] else { return true };
             let first = class.iter().find_map(|&other| Some((other, self.cells[other][k]?)));
-            let Some((other, cell)) = first else { return true };
+            let Some((other, cell)) = first else { return !self.is_unlike_elsewhere(trial, k, class) };
             let shown = (own.size() / most(trial)).max(cell.size() / most(other));
             shown < SHOWN || own.is_like(&cell)
         })
+    }
+
+    /// True where a line that only `trial` has is to the rod file what the lines of the same sensor
+    /// under the same loads are not, at other stations in the trials of `class`.
+    fn is_unlike_elsewhere(&self, trial: usize, k: usize, class: &[usize]) -> bool {
+        let line = &self.lines[k];
+        let is_of_sensor = |other: &usize| {
+            let other = &self.lines[*other];
+            (other.axis, other.channel) == (line.axis, line.channel)
+        };
+        let own = self.over_the_file(trial, k);
+        let others = class.iter().flat_map(|&other| {
+            (0..self.lines.len()).filter(is_of_sensor).filter_map(move |k| self.over_the_file(other, k))
+        });
+        let near = |ratio: f64| (1.0 / ELSEWHERE..ELSEWHERE).contains(&ratio);
+        own.is_some_and(|own| others.map(|other| own / other).any(|ratio| !near(ratio)))
+    }
+
+    /// The slope of a line in one trial over that of the rod file; `None` where either shows little.
+    fn over_the_file(&self, trial: usize, k: usize) -> Option<f64> {
+        let (by_rod, cells) = (self.by_rod?, &self.cells[trial]);
+        let cell = cells[k]?;
+        let file = |k: usize, cell: &Cell| by_rod[k].abs() * cell.load;
+        let most_read = cells.iter().flatten().map(Cell::size).fold(0.0, f64::max);
+        let all = cells.iter().enumerate().filter_map(|(k, cell)| Some(file(k, cell.as_ref()?)));
+        let is_shown = file(k, &cell) > SHOWN * all.fold(0.0, f64::max)
+            && cell.size() > SHOWN * most_read
+            && cell.fit.slope.abs() > ERRORS * cell.fit.error;
+        is_shown.then(|| cell.fit.slope / by_rod[k])
+    }
+
+    /// The lines that are right, and of those that they do not show what the rod file says.
+    fn completed(&self, shown: &[Option<Right>]) -> Vec<Option<Right>> {
+        let by_file = |k: usize| {
+            let slope = self.by_rod?[k];
+            Some(Right { slope, error: BY_FILE * slope.abs(), scatter: 0.0 })
+        };
+        shown.iter().enumerate().map(|(k, right)| right.clone().or_else(|| by_file(k))).collect()
     }
 
     /// Each line in some trials.
@@ -255,11 +304,13 @@ impl<'a> Table<'a> {
         (all > 0.0).then(|| Compared { misfit, left: off / all })
     }
 
-    /// What some trials hold instead, where one change brings them back to the others.
+    /// What some trials hold instead, where one change brings them back to the others: those that
+    /// are `right`, of which the recording itself has `shown` some.
     fn explained<'m>(
         &self,
         class: &[usize],
         right: &[Option<Right>],
+        shown: &[Option<Right>],
         mistakes: &'m [PossibleMistake],
     ) -> Option<InTrials> {
         let tried = |one: &'m PossibleMistake| {
@@ -272,8 +323,14 @@ impl<'a> Table<'a> {
         let &(best, score, left) = tried.first()?;
         let before = Relabelling::default();
         let before = self.compared(class, right, &before, |line| acts_on(&best.relabelling, line))?;
-        // signs of single lines are looked at reading by reading
-        let is_of_a_line = best.effect == &SIGN_MISTAKE && best.relabelling.reading != [[-1.0; 3]; 3];
+        // signs of single lines are looked at reading by reading where others show the line
+        let is_shown = |k: usize| {
+            let is_in_class = class.iter().any(|&trial| self.cells[trial][k].is_some());
+            is_in_class && shown[k].is_some() && acts_on(&best.relabelling, &self.lines[k])
+        };
+        let is_of_a_line = best.effect == &SIGN_MISTAKE
+            && best.relabelling.reading != [[-1.0; 3]; 3]
+            && (0..self.lines.len()).any(is_shown);
         if before.left < OFF || left > LEFT || score < ODDS - 0.5 * before.misfit || is_of_a_line {
             return None;
         }

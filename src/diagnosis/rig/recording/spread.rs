@@ -27,9 +27,9 @@ const FEWEST: usize = 20;
 /// Within this factor all sensors scatter alike: what is fitted to them knows of single ones that
 /// are off.
 const ALIKE: f64 = 1.5;
-/// And within so many standard deviations of a quartile of n differences: 0.91/√n, and more for
-/// those that have readings in common.
-const SURE: f64 = 3.0;
+/// And within so many standard deviations of a quartile of n differences, 0.91/√n and more for
+/// those that have readings in common: 1 of 2000, for each recording has some sensors.
+const SURE: f64 = 3.5;
 const OF_QUARTILE: f64 = 1.2;
 /// Upper quartile of the size of a normal number.
 const NORMAL: f64 = 1.1503;

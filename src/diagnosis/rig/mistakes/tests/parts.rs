@@ -50,6 +50,50 @@ fn what_one_trial_is_written_in_the_others_show() {
     cases.check();
 }
 
+/// Trials at different stations have no line in common: the rod file says what one of them is
+/// written in, also where nothing else was read at its station.
+#[test]
+fn what_a_trial_at_another_station_is_written_in_the_rod_file_shows() {
+    let mut cases = Cases::default();
+    recordings(&[Bench::Own], 3, |what, file, clean| {
+        let station = 0.6 * file.length();
+        let tip = file.length();
+        // what a sensor shows nearer the root, by the rod
+        let pairs = [[None, None], [None, Some(station)]];
+        let physics = super::super::physics::Physics::new(file, &pairs).unwrap();
+        let share = |axis: usize| physics.compliance(1)[(axis, axis)] / physics.compliance(0)[(axis, axis)];
+        assert!(station < tip);
+        let read_at = |trials: &[&str]| {
+            let mut readings = clean.clone();
+            for trial in trials {
+                for row in of_trial(&mut readings, trial) {
+                    row.read_station = Some(station);
+                    let share = share(row.direction.axis.index());
+                    row.offset.iter_mut().flatten().for_each(|y| *y *= share);
+                }
+            }
+            readings
+        };
+        for trials in [&["1"][..], &["1", "3"]] {
+            let right = read_at(trials);
+            let what = format!("{what} {trials:?}");
+            cases.expect(&what, &right, file, &[]);
+            let mut newtons = right.clone();
+            of_trial(&mut newtons, "1").for_each(|row| row.load /= G);
+            let expected = ["unit_mistake load_n, trial 1"];
+            cases.expect(&format!("{what} kg"), &newtons, file, &expected);
+            let mut flipped = right.clone();
+            of_trial(&mut flipped, "1")
+                .filter(|row| row.direction.axis.index() == 1)
+                .for_each(|row| row.offset[1].iter_mut().for_each(|y| *y *= -1.0));
+            if trials.len() == 1 {
+                cases.expect(&format!("{what} sign"), &flipped, file, &["sign_mistake dy_um, trial 1"]);
+            }
+        }
+    });
+    cases.check();
+}
+
 /// Two trials of three in kilograms: the rod file knows that it is these.
 #[test]
 fn the_rod_file_says_which_trials_are_right() {

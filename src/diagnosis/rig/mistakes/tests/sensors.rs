@@ -73,6 +73,26 @@ fn a_sensor_that_stopped_before_all_loads_that_move_it_is_found_with_the_rod() {
     cases.check();
 }
 
+/// The rod goes on by less than a step of the displays along z: they show the same there.
+#[test]
+fn a_sensor_is_not_stuck_where_its_display_cannot_show_what_the_rod_does() {
+    let file = rod(&ROD_5.replace("gamma_deg = 90.0", "gamma_deg = 140.0"));
+    let mut readings = recorded(&file, Bench::Own, 2);
+    let largest = |readings: &Readings, channel: usize| {
+        let all = readings.rows.iter().filter_map(|row| row.offset[channel]);
+        all.fold(0.0, |most: f64, y| most.max(y.abs()))
+    };
+    let step = 10.0 * UM;
+    let smaller = 0.95 * step / largest(&readings, 2);
+    readings = with_loads(&all_scaled(&readings, smaller), smaller);
+    assert!(largest(&readings, 1) < 20.0 * step, "z would be no part of what is looked at");
+    for row in &mut readings.rows {
+        row.offset.iter_mut().flatten().for_each(|y| *y = (*y / step).ceil() * step);
+    }
+    let named = found(&readings, Some(&file));
+    assert!(named.iter().all(|name| !name.contains("stuck")), "{named:?}");
+}
+
 #[test]
 fn a_sensor_that_was_cut_off_from_the_second_load_on_is_found_with_the_rod() {
     let file = rod(ROD_5);

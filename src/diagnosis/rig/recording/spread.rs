@@ -1,9 +1,9 @@
 //! How much each sensor scatters, beside the others: one that is far worse has a noise of its own.
 //!
 //! What repeats is no noise, and neither is what is smooth, so that the scatter of a sensor is the
-//! smaller of two, each without a model. Readings yⱼ of two runs one after the other, under the
-//! same loads, differ by dⱼ; and of one way through the loads x each reading has neighbours on both
-//! sides of it:
+//! smallest of three, each without a model. Readings yⱼ of two runs one after the other, under the
+//! same loads, differ by dⱼ, and so do the two ways of one run; and of one way through the loads x
+//! each reading has neighbours on both sides of it:
 //!
 //! ```text
 //! e = (dⱼ₊₁ − dⱼ)/2                                            t = (xⱼ − xⱼ₋₁)/(xⱼ₊₁ − xⱼ₋₁)
@@ -22,8 +22,9 @@ use super::resolution::resolution;
 use crate::diagnosis::rig::numbering::numbered;
 use crate::rig::readings::{Axis, RigHeader};
 
-/// Fewer such differences say nothing.
+/// Fewer such differences do not say what a sensor scatters by, but that it scatters by less.
 const FEWEST: usize = 20;
+const FEWEST_AGAINST: usize = 8;
 /// Within this factor all sensors scatter alike: what is fitted to them knows of single ones that
 /// are off.
 const ALIKE: f64 = 1.5;
@@ -134,21 +135,28 @@ fn scatter(own: &[&Datum]) -> Option<Scatter> {
         let least = others.min_by(|a, b| a.sigma.total_cmp(&b.sigma));
         Some(least.filter(|least| least.beside(&whole) < ALONG_ONE).unwrap_or(whole))
     };
-    let found = (0..2).filter_map(of_list).min_by(|a, b| a.sigma.total_cmp(&b.sigma))?;
-    let sigma = found.sigma.max(OF_STEP * resolution(own.iter().copied()));
-    (sigma > 0.0).then_some(Scatter { sigma, ..found })
+    let least = OF_STEP * resolution(own.iter().copied());
+    let of_list = |k| of_list(k).map(|own| Scatter { sigma: own.sigma.max(least), ..own });
+    let lists: Vec<Scatter> = (0..by_axis[0].len()).filter_map(of_list).collect();
+    let is_enough = |scatter: &&Scatter| scatter.count >= FEWEST;
+    let found = lists.iter().filter(is_enough).min_by(|a, b| a.sigma.total_cmp(&b.sigma))?;
+    if lists.iter().any(|other| other.beside(found) < 1.0) {
+        return None;
+    }
+    (found.sigma > 0.0).then_some(Scatter { ..*found })
 }
 
 fn quartile(differences: &[f64]) -> Option<Scatter> {
     let count = differences.len();
-    (count >= FEWEST).then_some(())?;
+    (count >= FEWEST_AGAINST).then_some(())?;
     let mut sizes: Vec<f64> = differences.iter().map(|own| own.abs()).collect();
     sizes.sort_by(f64::total_cmp);
     Some(Scatter { sigma: sizes[3 * count / 4] / NORMAL, count })
 }
 
-/// Of the readings under loads along an axis: about their neighbours, and from run to run.
-fn differences(axis: Axis, own: &[&Datum]) -> [Vec<f64>; 2] {
+/// Of the readings under loads along an axis: about their neighbours, from run to run, and from
+/// the way there to the way back.
+fn differences(axis: Axis, own: &[&Datum]) -> [Vec<f64>; 3] {
     let mut ways: BTreeMap<_, Vec<&Datum>> = BTreeMap::new();
     for datum in own.iter().filter(|datum| datum.direction.axis == axis) {
         // there and back are two ways
@@ -160,14 +168,19 @@ fn differences(axis: Axis, own: &[&Datum]) -> [Vec<f64>; 2] {
     }
     let smooth = ways.values().flat_map(|way| way.windows(3).map(of_neighbours)).collect();
     let mut repeats = Vec::new();
-    let ways: Vec<(_, &Vec<&Datum>)> = ways.iter().collect();
-    for pair in ways.windows(2) {
+    let in_order: Vec<(_, &Vec<&Datum>)> = ways.iter().collect();
+    for pair in in_order.windows(2) {
         let ((one, before), (other, after)) = (&pair[0], &pair[1]);
         if (one.0, one.1) == (other.0, other.1) {
             repeats.extend(of_repeats(before, after));
         }
     }
-    [smooth, repeats]
+    let back = |(&(stations, is_back, run), there): (&(_, bool, usize), &Vec<&Datum>)| {
+        let back = (!is_back).then(|| ways.get(&(stations, true, run))).flatten()?;
+        Some(of_repeats(there, back))
+    };
+    let there_and_back: Vec<f64> = ways.iter().filter_map(back).flatten().collect();
+    [smooth, repeats, there_and_back]
 }
 
 /// What a reading is off the line through its neighbours.
@@ -178,7 +191,7 @@ fn of_neighbours(three: &[&Datum]) -> f64 {
     (y[1] - (1.0 - t) * y[0] - t * y[2]) / (1.0 + (1.0 - t).powi(2) + t * t).sqrt()
 }
 
-/// What two runs through the same loads differ by, from load to load.
+/// What two ways through the same loads differ by, from load to load.
 fn of_repeats(before: &[&Datum], after: &[&Datum]) -> Vec<f64> {
     let mut rest = after.iter().peekable();
     let mut differences = Vec::new();
@@ -211,21 +224,31 @@ mod tests {
     /// By channel, of five trials along x, y and z: the first reading's. `noise` and `shape` are in
     /// µm.
     fn spread_of(noise: impl Fn(&Read) -> f64, shape: impl Fn(&Read) -> f64) -> [f64; 3] {
+        spread_in(&recorded(5, 4, noise, shape))
+    }
+
+    /// Trials along x, y and z through loads that go up and down again.
+    fn recorded(
+        trials: usize,
+        loads: usize,
+        noise: impl Fn(&Read) -> f64,
+        shape: impl Fn(&Read) -> f64,
+    ) -> String {
         let mut random = Random::seeded(5, 0);
         let mut text = "trial,axis,load_n,phase,dx_um,dy_um,dz_um\n".to_owned();
-        for (trial, axis) in (0..5).flat_map(|trial| (0..3).map(move |axis| (trial, axis))) {
-            for (load, phase) in
-                [(2, "load"), (4, "load"), (6, "load"), (8, "load"), (4, "unload"), (2, "unload")]
-            {
+        let up = (1..=loads).map(|load| (2 * load, "load"));
+        let ways: Vec<_> = up.chain((1..loads).rev().map(|load| (2 * load, "unload"))).collect();
+        for (trial, axis) in (0..trials).flat_map(|trial| (0..3).map(move |axis| (trial, axis))) {
+            for &(load, phase) in &ways {
                 text += &format!("{trial},{},{load},{phase}", Axis::ALL[axis]);
                 for channel in 0..3 {
-                    let read = Read { trial, axis, channel, load: f64::from(load) };
+                    let read = Read { trial, axis, channel, load: load as f64 };
                     text += &format!(",{:.2}", shape(&read) + noise(&read) * random.normal());
                 }
                 text += "\n";
             }
         }
-        spread_in(&text)
+        text
     }
 
     fn spread_in(text: &str) -> [f64; 3] {
@@ -250,6 +273,10 @@ mod tests {
         // bent as no line is, the same in all trials
         let bent = |read: &Read| if read.channel == 2 { 60.0 * (1.3 * read.load).sin() } else { 0.0 };
         assert_eq!(spread_of(even, bent), [1.0; 3]);
+        // and on both ways of a run
+        assert_eq!(spread_in(&recorded(1, 10, even, bent)), [1.0; 3]);
+        // where few loads were repeated, too
+        assert_eq!(spread_in(&recorded(1, 6, even, bent)), [1.0; 3]);
         // each run with a zero and a slope of its own
         let drifting = |read: &Read| {
             let run = (3 * read.trial + read.axis) as f64;

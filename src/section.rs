@@ -72,6 +72,17 @@ impl<T: Number> Section<T> {
         }
     }
 
+    /// The section turned by 90° about the centreline.
+    pub fn turned(self) -> Section<T> {
+        match self {
+            Section::Round(_) => self,
+            Section::Rectangle(own) => {
+                Section::Rectangle(Rectangle { width: own.height, height: own.width, wall: own.wall })
+            }
+            Section::General(own) => Section::General(General { iy: own.iz, iz: own.iy, ..own }),
+        }
+    }
+
     /// I_y, m⁴, for bending in the rod's plane: the first of [`Section::second_moments`].
     pub fn second_moment(&self) -> T {
         self.second_moments()[0]

@@ -161,6 +161,10 @@ pub struct Key {
 pub enum Part {
     /// The rod as a whole.
     Rod,
+    /// The rod's pipe from the flange to its bend, with its sleeves.
+    Pipe1,
+    /// That from its bend to the tip.
+    Pipe2,
     /// The rod's connection to the flange or the clamp of the rig.
     Root,
     /// The bend between the rod's pipes.
@@ -349,6 +353,8 @@ impl fmt::Display for Part {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Part::Rod => "rod",
+            Part::Pipe1 => "pipe 1",
+            Part::Pipe2 => "pipe 2",
             Part::Root => "root",
             Part::Bend => "bend",
             Part::Slide => "slide",

@@ -81,6 +81,7 @@ impl RigModel {
             | Action::TurnSensor(..)
             | Action::TurnSensors(..) => true,
             Action::Stiffness
+            | Action::StiffnessOf(_)
             | Action::ShearModulus
             | Action::SensorScale(_)
             | Action::Joint(..)

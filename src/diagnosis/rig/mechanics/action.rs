@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::display::Display;
 use super::load_history::{History, Memory, Onset};
-use super::structure::Nodes;
+use super::structure::{Nodes, Of};
 use crate::diagnosis::rig::own_effect::law::OwnLaw;
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::spatial::Axis;
@@ -24,6 +24,8 @@ pub enum Action {
     TurnLoad([bool; 3], Axis, Axis),
     /// Factor on E and G \[1\].
     Stiffness,
+    /// The same of one pipe \[1\].
+    StiffnessOf(Of),
     /// Factor on G \[1\].
     ShearModulus,
     /// Flexibility factor of the bend \[that of the rod file\].
@@ -114,6 +116,7 @@ impl Action {
         matches!(
             self,
             Action::Stiffness
+                | Action::StiffnessOf(_)
                 | Action::ShearModulus
                 | Action::Bend(_)
                 | Action::Joint(..)
@@ -142,6 +145,7 @@ impl Action {
             | Action::LoadOffset(_)
             | Action::TurnLoad(..)
             | Action::Stiffness
+            | Action::StiffnessOf(_)
             | Action::ShearModulus
             | Action::Bend(_)
             | Action::Joint(..)
@@ -167,6 +171,7 @@ impl Action {
             | Action::LoadOffset(_)
             | Action::TurnLoad(..)
             | Action::Stiffness
+            | Action::StiffnessOf(_)
             | Action::ShearModulus
             | Action::Bend(_)
             | Action::Joint(..)

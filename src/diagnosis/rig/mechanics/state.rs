@@ -135,6 +135,7 @@ impl<'a> State<'a> {
                 }
             }
             Action::Stiffness => self.softening.stiffness *= value,
+            Action::StiffnessOf(pipe) => self.softening.pipes[*pipe as usize] *= value,
             Action::ShearModulus => self.softening.shear *= value,
             Action::Bend(of_file) => self.softening.bend += value - of_file,
             Action::Joint(joint, of_file) => self.softening.joints.push((*joint, value - of_file)),

@@ -5,8 +5,9 @@
 //! read station per force at the load station, in {T},
 //!
 //! ```text
-//! C = C₀ + (P + B·(1/g − 1) + D·(k − k₀))/f − P + Σ β_j·J_j
+//! C = C₀ + (P + B·(1/g − 1) + Σ P_i·(1/f_i − 1) + D·(k − k₀))/f − P + Σ β_j·J_j
 //! P pipes and bend     f factor on E and G        B torsion and shear of the pipes     g factor on G
+//! P_i pipe 1, pipe 2   f_i factor on its E and G, where G is as stated (g = 1)
 //! D bending of the arc k, k₀ its flexibility factor, the file's factor        J_j a joint per rad/(N·m), β_j its change
 //! ```
 //!
@@ -43,6 +44,8 @@ pub struct Structure {
     whole: Parts,
     pipes: Parts,
     torsion_and_shear: Parts,
+    /// Of pipe 1, and of pipe 2, with their sleeves.
+    of_pipes: [Parts; 2],
     /// Per unit of the bend's flexibility factor; nothing without an arc.
     arc: Option<Parts>,
     /// The rod file's flexibility factor of the bend.
@@ -78,6 +81,10 @@ impl Structure {
         let pipes = responses(&without_joints, &pairs)?;
         // G twice as high halves what G is responsible for
         let stiffer = responses(&with_moduli(&without_joints, 1.0, 2.0), &pairs)?;
+        // moduli twice as high halve what a pipe is responsible for
+        let [first, second] =
+            Of::BOTH.map(|pipe| responses(&with_stiffer(&without_joints, pipe, 2.0), &pairs));
+        let of_pipes = [first?, second?].map(|stiffer| difference(&pipes, &stiffer, 2.0));
         let arc = match rod.arc_length() > 0.0 {
             true => {
                 let flexible = BendFlexibility::Factor(bend_factor + 1.0);
@@ -89,6 +96,7 @@ impl Structure {
         Ok(Structure {
             whole: responses(rod, &pairs)?,
             torsion_and_shear: difference(&pipes, &stiffer, 2.0),
+            of_pipes,
             pipes,
             // of an arc so short that the beam model makes it a corner nothing is left
             arc: arc.filter(|parts| parts.iter().any(|part| part.amax() > 0.0)),
@@ -172,6 +180,9 @@ impl Structure {
         let of_pair = |pair: usize| {
             let mut pipes = self.pipes[pair];
             pipes += self.torsion_and_shear[pair] * (1.0 / softening.shear - 1.0);
+            for (own, factor) in self.of_pipes.iter().zip(softening.pipes) {
+                pipes += own[pair] * (1.0 / factor - 1.0);
+            }
             if let Some(arc) = &self.arc {
                 pipes += arc[pair] * softening.bend;
             }
@@ -281,6 +292,44 @@ fn stiffness(rod: &Rod, station: f64) -> [f64; 2] {
 
 fn difference(a: &[Matrix3<f64>], b: &[Matrix3<f64>], factor: f64) -> Parts {
     a.iter().zip(b).map(|(a, b)| (a - b) * factor).collect()
+}
+
+/// One of the two pipes of a rod.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Of {
+    /// From the flange to the bend.
+    Pipe1,
+    /// From the bend to the tip.
+    Pipe2,
+}
+
+impl Of {
+    /// From the flange on.
+    pub const BOTH: [Of; 2] = [Of::Pipe1, Of::Pipe2];
+}
+
+/// A rod with other moduli of one pipe, of its sleeves, and of the bend where that is pipe 1's: a
+/// factor on E and G.
+pub fn with_stiffer(rod: &Rod, pipe: Of, factor: f64) -> Rod {
+    let (mut stiffer, corner) = (rod.clone(), rod.bend_start());
+    let is_of_first = |station: f64| station < corner;
+    let of_pipe = |own: &mut Pipe| {
+        own.material.youngs_modulus *= factor;
+        own.material.shear_modulus *= factor;
+    };
+    match pipe {
+        Of::Pipe1 => {
+            of_pipe(&mut stiffer.pipe1);
+            if rod.bend == rod.pipe1 {
+                of_pipe(&mut stiffer.bend);
+            }
+        }
+        Of::Pipe2 => of_pipe(&mut stiffer.pipe2),
+    }
+    let sleeves = stiffer.sleeves.iter_mut();
+    let own = sleeves.filter(|sleeve| is_of_first(sleeve.from) == (pipe == Of::Pipe1));
+    own.for_each(|sleeve| of_pipe(&mut sleeve.pipe));
+    stiffer
 }
 
 /// A rod with other moduli: factors on E and G of all pipes.

@@ -13,6 +13,7 @@ use super::relabelling::Relabelling;
 use crate::diagnosis::rig::effects::mistakes::{ANGLE_MISTAKE, ROD_MISTAKE, SWAP_MISTAKE};
 use crate::inference::{Effect, Key};
 use crate::rod::Rod;
+use crate::section::Section;
 
 /// Another rod is no unit: what remains must be as files are.
 const OTHER: f64 = 1.1;
@@ -50,7 +51,7 @@ pub(in crate::diagnosis::rig) struct OtherRod {
     pub log_prior: f64,
 }
 
-/// The given rod with its lengths, or its pipes, exchanged.
+/// The given rod with its lengths, the sides of its sections, or its pipes exchanged.
 fn exchanged(rod: &Rod) -> Vec<OtherRod> {
     let with = |keys: &str, meant: Rod, log_prior: f64| OtherRod {
         rod: meant,
@@ -63,6 +64,13 @@ fn exchanged(rod: &Rod) -> Vec<OtherRod> {
     if rod.l1 != rod.l2 {
         let meant = Rod { l1: rod.l2, l2: rod.l1, ..rod.clone() };
         found.push(with("l1_mm and l2_mm", meant, 0.0));
+    }
+    let mut turned = rod.clone();
+    turned.pipes_mut().for_each(|pipe| pipe.section = pipe.section.turned());
+    if turned != *rod {
+        let has_sides = turned.pipes_mut().any(|pipe| matches!(pipe.section, Section::Rectangle(_)));
+        let keys = if has_sides { "width_mm and height_mm" } else { "iy_mm4 and iz_mm4" };
+        found.push(with(keys, turned, 0.0));
     }
     if rod.pipe1 != rod.pipe2 {
         let meant = Rod { pipe1: rod.pipe2.clone(), pipe2: rod.pipe1.clone(), ..rod.clone() };

@@ -67,6 +67,7 @@ impl RigModel {
             | Action::LoadOffset(_)
             | Action::TurnLoad(..)
             | Action::Stiffness
+            | Action::StiffnessOf(_)
             | Action::ShearModulus
             | Action::Bend(_)
             | Action::JointIn(..)

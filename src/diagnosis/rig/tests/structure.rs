@@ -28,6 +28,16 @@ fn effects_on_the_structure_equal_the_beam_model_of_the_changed_rod() {
     };
     assert_all(&one(&model, "stiffness_scale", "rod", 0.8, Axis::Y), &of_changed(&moduli(0.8, 0.8)));
     assert_all(&one(&model, "shear_modulus", "rod", 0.6, Axis::Y), &of_changed(&moduli(1.0, 0.6)));
+    let mut first = rod.clone();
+    for pipe in [&mut first.pipe1, &mut first.bend] {
+        pipe.material.youngs_modulus *= 0.8;
+        pipe.material.shear_modulus *= 0.8;
+    }
+    let mut second = rod.clone();
+    second.pipe2.material.youngs_modulus *= 1.4;
+    second.pipe2.material.shear_modulus *= 1.4;
+    assert_all(&one(&model, "stiffness_scale", "pipe 1", 0.8, Axis::Y), &of_changed(&first));
+    assert_all(&one(&model, "stiffness_scale", "pipe 2", 1.4, Axis::Y), &of_changed(&second));
     let joint = |station: f64| {
         let mut changed = rod.clone();
         let name = "new".into();
@@ -58,6 +68,36 @@ fn effects_on_the_structure_equal_the_beam_model_of_the_changed_rod() {
         &one(&model, "joint_compliance", "sleeve", 25.0 * URAD_PER_NM, Axis::Y),
         &of_changed(&declared),
     );
+}
+
+/// Walls of one pipe that are thinner than the file's: it is this pipe.
+#[test]
+fn a_pipe_with_other_walls_is_found() {
+    let file = Rod::from_toml("rod", include_str!("../../../../rods/5.toml")).unwrap();
+    for pipe in ["pipe 1", "pipe 2"] {
+        let mut actual = file.clone();
+        let own = if pipe == "pipe 1" { &mut actual.pipe1 } else { &mut actual.pipe2 };
+        own.section = crate::section::Round::tube(32e-3, 30.4e-3).into();
+        let c = compliance(&actual) / UM;
+        let mut random = crate::statistics::Random::seeded(8, 0);
+        let mut text = "axis,load_n,trial,dx_um,dy_um,dz_um\n".to_owned();
+        for (trial, axis) in (1..5).flat_map(|trial| (0..3).map(move |axis| (trial, axis))) {
+            for load in [5.0, 10.0, 15.0, 20.0] {
+                let [x, y, z] = [0, 1, 2].map(|channel| c[(channel, axis)] * load + random.normal());
+                text += &format!("{},{load},{trial},{x:.1},{y:.1},{z:.1}\n", ["x", "y", "z"][axis]);
+            }
+        }
+        let readings = Readings::from_text("f", &text).unwrap();
+        let (made, evidence) = RigModel::new(&readings, Some(&file)).unwrap();
+        let found = infer(&made, &evidence).findings;
+        assert_eq!(found.len(), 1, "{found:#?}");
+        let finding = &found[0];
+        assert_eq!((finding.effect.name, finding.location.to_string().as_str()), ("stiffness_scale", pipe));
+        let thinner = actual.pipe1.section.second_moment().min(actual.pipe2.section.second_moment());
+        let factor = thinner / file.pipe1.section.second_moment();
+        let estimate = &finding.estimates[0];
+        assert!(estimate.low < factor && factor < estimate.high, "{factor} {estimate:?}");
+    }
 }
 
 #[test]

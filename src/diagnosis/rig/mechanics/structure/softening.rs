@@ -1,10 +1,12 @@
-//! What is wrong with a structure: moduli, the bend, joints, and where these are.
+//! What is wrong with a structure: moduli, those of one pipe, the bend, joints, and where these are.
 
 /// What is wrong with a structure.
 #[derive(Debug, Clone)]
 pub struct Softening {
     /// Factor on the moduli E and G.
     pub stiffness: f64,
+    /// Factor on the moduli of pipe 1 and of pipe 2.
+    pub pipes: [f64; 2],
     /// Factor on G alone.
     pub shear: f64,
     /// Change of the bend's flexibility factor.
@@ -15,7 +17,7 @@ pub struct Softening {
 
 impl Default for Softening {
     fn default() -> Self {
-        Softening { stiffness: 1.0, shear: 1.0, bend: 0.0, joints: Vec::new() }
+        Softening { stiffness: 1.0, pipes: [1.0; 2], shear: 1.0, bend: 0.0, joints: Vec::new() }
     }
 }
 

@@ -54,8 +54,30 @@ fn everything_wrong_at_once_is_the_beam_model_of_that_rod() {
         wrong.joints[0].bending = 5e-5;
         let [declared, _] = structure.add_joint(0.205);
         joints.push((declared, 3e-5));
-        let softening = Softening { stiffness: 0.7, shear: 1.2, bend: 2.1 - 1.3, joints };
+        let softening =
+            Softening { stiffness: 0.7, shear: 1.2, bend: 2.1 - 1.3, joints, ..Softening::default() };
         assert_same(&structure.softened(&softening), &responses(&wrong, &pairs(&rod)).unwrap(), within);
+    }
+}
+
+#[test]
+fn a_pipe_that_is_softer_by_itself_is_the_rod_with_its_moduli() {
+    for rod in
+        [with_sleeve(&rod("bend_radius_mm = 0.0 ")), rod("bend_radius_mm = 40\nbend_flexibility = 1.3")]
+    {
+        let structure = Structure::new(&rod, pairs(&rod)).unwrap();
+        for pipe in Of::BOTH {
+            let mut pipes = [1.0; 2];
+            pipes[pipe as usize] = 0.6;
+            let expected = responses(&with_stiffer(&rod, pipe, 0.6), &pairs(&rod)).unwrap();
+            assert_same(&structure.softened(&Softening { pipes, ..Softening::default() }), &expected, 1e-9);
+        }
+        // both together are the whole but for the bend
+        if rod.bend == rod.pipe1 {
+            let both = structure.softened(&Softening { pipes: [0.6; 2], ..Softening::default() });
+            let all = structure.softened(&Softening { stiffness: 0.6, ..Softening::default() });
+            assert_same(&both, &all, 1e-9);
+        }
     }
 }
 

@@ -95,6 +95,28 @@ fn signs_are_named_where_they_can_be_seen() {
 }
 
 #[test]
+fn sides_of_a_section_that_were_exchanged_are_found() {
+    let sides = |width: f64, height: f64| {
+        let pipe = |rod: &mut Rod| {
+            let section: crate::section::Section = crate::section::Rectangle::solid(width, height).into();
+            rod.pipes_mut().for_each(|pipe| pipe.section = section);
+        };
+        let mut rod = rod(ROD_5);
+        pipe(&mut rod);
+        rod
+    };
+    let mut cases = Cases::default();
+    for bench in [Bench::Full, Bench::Own] {
+        let clean = recorded(&sides(12e-3, 20e-3), bench, 4);
+        let what = format!("{bench:?}");
+        cases.expect(&what, &clean, &sides(12e-3, 20e-3), &[]);
+        let expected = ["swap_mistake width_mm and height_mm"];
+        cases.expect(&what, &clean, &sides(20e-3, 12e-3), &expected);
+    }
+    cases.check();
+}
+
+#[test]
 fn names_that_were_exchanged_are_found() {
     let mut cases = Cases::default();
     recordings(&[Bench::Full, Bench::Own], 1, |what, file, clean| {

@@ -22,6 +22,7 @@ mod entries;
 mod groups;
 mod increments;
 mod labels;
+mod limits;
 mod lines;
 mod lookalikes;
 mod mended;

@@ -3,7 +3,8 @@
 //! Readings of the same loads in two trials are the same to the last digit now and then: with a
 //! scatter of s and a display of step q in a share of p = q/(2·√π·s) of them. All n of a trial are
 //! by a chance of pⁿ. A recording without noise repeats itself in every trial; only where others
-//! scatter, beside zeros and slopes of their own, is one a copy.
+//! scatter, beside zeros and slopes of their own, or, where they went through other loads or
+//! stations, its own readings scatter about each other, is one a copy.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +16,9 @@ use super::search::ODDS;
 use crate::diagnosis::rig::recording::columns::{rows_of, trial_name};
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::diagnosis::rig::recording::resolution::resolution;
+use crate::diagnosis::rig::recording::spread::scatter_of;
 use crate::inference::Key;
+use crate::spatial::Axis;
 use crate::statistics::median;
 
 /// Scatter that hardly any display rounds away, in steps.
@@ -48,7 +51,10 @@ pub(super) fn found(data: &[Datum]) -> Vec<Part> {
         let Some(first) = (0..t).find(|&other| same[other] == same[t]) else { continue };
         let others =
             (0..trials.len()).filter(|&o| protocols[o] == protocols[t] && same[o] != same[t]).take(COMPARED);
-        let scatters: Vec<f64> = others.flat_map(|other| scatters(data, own, trials[other])).collect();
+        let mut scatters: Vec<f64> = others.flat_map(|other| scatters(data, own, trials[other])).collect();
+        if scatters.is_empty() && same.iter().any(|other| *other != same[t]) {
+            scatters = own_scatters(data, own);
+        }
         let scatter = median(&scatters).unwrap_or(0.0);
         let step = resolution(own.iter().map(|&i| &data[i]));
         let moving = own.iter().filter(|&&i| data[i].measured != 0.0).count();
@@ -86,6 +92,16 @@ fn scatters(data: &[Datum], first: &[usize], second: &[usize]) -> Vec<f64> {
         points[line].push((data[a].signed_load(), data[a].measured - data[b].measured));
     }
     points.iter().filter(|points| points.len() > 2).map(|points| fit(points).scatter / 2f64.sqrt()).collect()
+}
+
+/// Scatter of the readings of each sensor of a trial about each other, m.
+fn own_scatters(data: &[Datum], own: &[usize]) -> Vec<f64> {
+    let of_channel = |channel: Axis| {
+        let of_sensor: Vec<&Datum> =
+            own.iter().map(|&i| &data[i]).filter(|datum| datum.channel == channel).collect();
+        scatter_of(&of_sensor)
+    };
+    Axis::ALL.into_iter().filter_map(of_channel).collect()
 }
 
 /// `trial 3`, `rows 7 to 12`.

@@ -21,6 +21,7 @@ use std::collections::BTreeMap;
 
 use super::super::effects::mistakes::ROW_MISTAKE;
 use super::super::numbering::numbered;
+use super::limits::without_limits;
 use super::lines::{Fit, fit};
 use super::part::Part;
 use super::possible::exact;
@@ -85,7 +86,8 @@ pub(super) struct Displaced {
 
 /// Rows that are displaced against their readings.
 pub(super) fn found(rows: &[Reading], load: LoadColumn) -> Option<Displaced> {
-    let sheet = Sheet::of(rows);
+    let known = without_limits(rows);
+    let sheet = Sheet::of(&known);
     let own: Vec<Owner> = (0..rows.len()).map(|i| Some((i, i))).collect();
     let (left, is_off) = sheet.left_where_it_is(&own);
     if !is_off {
@@ -105,7 +107,7 @@ pub(super) fn found(rows: &[Reading], load: LoadColumn) -> Option<Displaced> {
     let place = |one: &Tried| sheet.place(one, load);
     let near = tried.iter().filter(|one| one.kind != best.kind && one.left < NO_WORSE * best.left);
     let channels = sheet.channels();
-    let rows = rows_between(best.stretch.0 + 1, best.stretch.1 + 1);
+    let stretch = rows_between(best.stretch.0 + 1, best.stretch.1 + 1);
     let (what, it) = match best.kind {
         Kind::Readings(_) => ("the readings", channels.as_str()),
         Kind::Loads(_) | Kind::WayDown => ("the loads", load_column(load)),
@@ -126,7 +128,7 @@ pub(super) fn found(rows: &[Reading], load: LoadColumn) -> Option<Displaced> {
                 by => format!("{by} rows"),
             };
             (
-                format!("In the {rows}, {what} stand {count} too {stand}: move {it} {go} by {count}"),
+                format!("In the {stretch}, {what} stand {count} too {stand}: move {it} {go} by {count}"),
                 -by as f64,
             )
         }
@@ -141,7 +143,7 @@ pub(super) fn found(rows: &[Reading], load: LoadColumn) -> Option<Displaced> {
         data: Vec::new(),
         rivals: near.map(|one| (&ROW_MISTAKE, place(one))).collect(),
     };
-    Some(Displaced { part, rows: sheet.mended(best) })
+    Some(Displaced { part, rows: Sheet::of(rows).mended(best) })
 }
 
 /// One displacement in the stretch of rows in which it takes off the most.

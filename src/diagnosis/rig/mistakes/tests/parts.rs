@@ -264,6 +264,31 @@ fn a_trial_that_repeats_another_one_is_a_copy() {
     cases.check();
 }
 
+/// The only other trial was read elsewhere: the readings themselves show that they scatter.
+#[test]
+fn a_copy_beside_a_trial_at_another_station_is_a_copy() {
+    let mut cases = Cases::default();
+    let file = rod(ROD_5);
+    for seed in 0..2 {
+        let mut rows = Vec::new();
+        for (trial, axis) in (1..=3).flat_map(|trial| [Axis::Y, Axis::Z].map(|axis| (trial, axis))) {
+            for k in 1..=15 {
+                let mut row = Reading::new(Direction::along(axis), f64::from(k));
+                row.trial = Some(trial.to_string());
+                row.read_station = (trial == 2).then(|| 0.6 * file.length());
+                row.offset = [Some(0.0); 3];
+                rows.push(row);
+            }
+        }
+        let clean = read(&file, rows, seed);
+        let mut copied = clean.clone();
+        (0..30).for_each(|k| copied.rows[60 + k].offset = clean.rows[k].offset);
+        cases.expect(&format!("{seed}"), &clean, &file, &[]);
+        cases.expect(&format!("{seed} copied"), &copied, &file, &["copy_mistake trial 3"]);
+    }
+    cases.check();
+}
+
 /// Where trials have no names a run ends where a load comes again, which kilograms do not.
 #[test]
 fn trials_without_names_begin_where_an_axis_comes_back() {
@@ -337,4 +362,30 @@ fn a_zero_of_an_unnamed_trial_moves_no_rows() {
     }
     let mended = mended(&Readings::from_rows(rows).unwrap(), Some(&file), &[]).unwrap();
     assert!(names(&mended).iter().all(|name| !name.starts_with("row_mistake")), "{:?}", names(&mended));
+}
+
+/// Own channels only, up only, a display that ends at half of the largest reading: the readings at
+/// its end are no readings of the rows above.
+#[test]
+fn a_display_at_its_end_displaces_no_rows() {
+    let mut cases = Cases::default();
+    let file = rod(ROD_5);
+    for seed in 0..3 {
+        let mut rows = Vec::new();
+        for (trial, axis) in (1..=6).flat_map(|trial| Axis::ALL.map(|axis| (trial, axis))) {
+            for k in 1..=7 {
+                let mut row = Reading::new(Direction::along(axis), 2.2 * f64::from(k));
+                row.trial = Some(trial.to_string());
+                row.offset[axis.index()] = Some(0.0);
+                rows.push(row);
+            }
+        }
+        let mut readings = read(&file, rows, seed);
+        let most = readings.rows.iter().filter_map(|row| row.offset[1]).fold(0.0, f64::max);
+        for row in &mut readings.rows {
+            row.offset[1].iter_mut().for_each(|y| *y = y.min((5.3e6 * most / 8.0).round() / 1e6));
+        }
+        cases.expect(&format!("{seed}"), &readings, &file, &["saturated_sensor dy_um"]);
+    }
+    cases.check();
 }

@@ -15,6 +15,7 @@ pub(super) mod events;
 pub(super) mod history;
 pub(super) mod load;
 pub mod mistakes;
+pub(super) mod pipe;
 pub(super) mod places;
 pub mod registry;
 pub(super) mod sensor;

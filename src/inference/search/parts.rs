@@ -53,8 +53,15 @@ pub fn part(
     let least = gained - 2.0 * APART.ln();
     // what a large effect comes to is only about known before it is fitted
     let nearly = gained - (2.0 * APART.ln()).max(ABOUT * gained);
-    // a mistake is as rare as it is easily looked up: it is no less of a rival
-    let rare = |index: usize| if candidates[index].effect.kind == Kind::Mistake { MISTAKE } else { 1.0 };
+    // a mistake is as rare as it is easily looked up, and so is an effect of little weight: neither
+    // is less of a rival
+    let rare = |index: usize| match candidates[index].effect {
+        effect if effect.kind == Kind::Mistake => MISTAKE,
+        effect => {
+            let same = candidates.iter().filter(|other| other.effect == effect && !other.is_nonparametric);
+            same.map(|other| other.weight).sum::<f64>().min(1.0)
+        }
+    };
     let own = candidates[term.candidate].effect;
     let many = in_many_places(candidates, &additions);
     let places_of = |effect: &Effect| {

@@ -1,13 +1,13 @@
 //! All effects of a rig, in the order of preference among equals: the single source of names.
 
 use super::entry::RigEffect;
-use super::{display, events, history, load, mistakes, sensor, structure, zeros};
+use super::{display, events, history, load, mistakes, pipe, sensor, structure, zeros};
 use crate::diagnosis::rig::model::RigModel;
 use crate::inference::{Effect, Term, WrittenTo};
 use crate::rod::Rod;
 
 /// Every effect that the diagnosis of a rig knows.
-pub static ALL: [&RigEffect; 18] = [
+pub static ALL: [&RigEffect; 19] = [
     &load::FRICTION,
     &load::LOAD_OFFSET,
     &load::BACKLASH,
@@ -16,6 +16,7 @@ pub static ALL: [&RigEffect; 18] = [
     &structure::JOINT_COMPLIANCE,
     &structure::ROOT_COMPLIANCE,
     &structure::BEND_FLEXIBILITY,
+    &pipe::PIPE_STIFFNESS,
     &sensor::SENSOR_MISALIGNMENT,
     &load::LOAD_MISALIGNMENT,
     &sensor::SENSOR_SCALE,

@@ -6,23 +6,17 @@ use super::entry::{
 };
 use super::places::{sessions, stations};
 use crate::diagnosis::rig::mechanics::action::Action;
-use crate::diagnosis::rig::mechanics::structure::{Deformation, Of, Structure, with_moduli, with_stiffer};
+use crate::diagnosis::rig::mechanics::structure::{Deformation, Structure, with_moduli};
 use crate::diagnosis::rig::model::{Body, RigModel};
 use crate::inference::{
     Candidate, Effect, Finding, ForwardModel, Kind, Location, Part, Quantity, Reported, Term, WrittenTo,
 };
 use crate::rod::{self, BendFlexibility, Rod};
-use crate::units::{MM, capital, significant};
+use crate::units::{MM, significant};
 
 /// Share by which a rod is softer than its model: 1 − 1/r is 0.27 rms over the r_rod of the paper's
 /// six rods (1.013 to 2.302).
 const SOFTNESS: f64 = 0.27;
-/// The same of one pipe: walls of tubes are within 12.5 % (EN ISO 1127, class T2), moduli of
-/// laminates within 10 %.
-const OF_A_PIPE: f64 = 0.15;
-/// A pipe is at most as far off as steel is from aluminium: beyond that it imitates what connects
-/// it.
-const PIPE_SCALES: (f64, f64) = (1.0 / 3.0, 3.0);
 /// Compliance of a joint or a flange as a share of the rod's own, ∫ds/EI: 0.2 as at the corner of
 /// the paper's rod 2#, with the reconstructed sections (6.5 of 30 µrad/(N·m)).
 const JOINT: f64 = 0.2;
@@ -31,18 +25,14 @@ const BEND: f64 = 0.3;
 
 const NOT_YIELDING: &str = "these loads do not deform it";
 
-/// The pipes as places.
-const PIPES: [(Part, Of); 2] = [(Part::Pipe1, Of::Pipe1), (Part::Pipe2, Of::Pipe2)];
-
-/// Moduli, or walls, of the whole rod or of a pipe.
+/// Moduli, or walls, of the whole rod.
 pub static STIFFNESS_SCALE: RigEffect = RigEffect {
     effect: Effect {
         name: "stiffness_scale",
         kind: Kind::Physics,
-        summary: "the whole rod, or one of its pipes, is softer or stiffer than stated",
-        formula: "E → f·E, G → f·G in all pipes, or in one",
-        prior: "27 %: 1 − 1/r, rms over the r_rod of the paper's six rods; of one pipe 15 %, as walls and moduli \
-                are off",
+        summary: "the whole rod is softer or stiffer than stated",
+        formula: "E → f·E, G → f·G in all pipes",
+        prior: "27 %: 1 − 1/r, rms over the r_rod of the paper's six rods",
         parameters: &[(&["factor"], "actual over nominal stiffness")],
         needs: "a rod file",
         cause: "moduli, walls or lengths that differ from the rod file",
@@ -52,39 +42,25 @@ pub static STIFFNESS_SCALE: RigEffect = RigEffect {
         seen_along: along_the_load,
         direct_check: None,
     },
-    usual: &[Usual::Share(SOFTNESS), Usual::Share(OF_A_PIPE)],
+    usual: &[Usual::Share(SOFTNESS)],
     needs_rod: true,
     candidates: |context| {
         // a share of the stiffness that there is: a rod is softer or stiffer by a factor
+        let size = SOFTNESS * context.stiffness.max(1.0);
         let far = context.stiffness;
         let bounds = (SCALES.0 * far.min(1.0), SCALES.1 * far.max(1.0));
-        let factor = |share: f64, bounds| parameter("factor", 1.0, share * far.max(1.0), bounds);
-        let rod = Location::Part(Part::Rod);
-        let of_rod = factor(SOFTNESS, bounds);
-        let mut entries = vec![entry(&STIFFNESS_SCALE, rod.clone(), of_rod, Action::Stiffness)];
-        entries.extend(PIPES.map(|(part, pipe)| {
-            let of_pipe = factor(OF_A_PIPE, PIPE_SCALES);
-            entry(&STIFFNESS_SCALE, Location::Part(part), of_pipe, Action::StiffnessOf(pipe))
-        }));
-        preferring(entries, |candidate| candidate.location == rod)
+        let factor = parameter("factor", 1.0, size, bounds);
+        vec![entry(&STIFFNESS_SCALE, Location::Part(Part::Rod), factor, Action::Stiffness)]
     },
     missing: |_| NOT_YIELDING,
     observed: |finding, model| {
-        if PIPES.iter().any(|(part, _)| finding.location == Location::Part(*part)) {
-            let pipe = capital(&finding.location.to_string());
-            return format!("{pipe} is {} than in the model", softer(number(finding, "factor")));
-        }
         // the rod as a whole is so by less, where a part of it bends in its joints
         let is_jointed = model.rod.as_ref().is_some_and(|rod| !rod.joints.is_empty());
         let joints = if is_jointed { ", its joints as stated" } else { "" };
         format!("All tubes of the rod are {} than in the model{joints}", softer(number(finding, "factor")))
     },
-    write: |term, model, rod| {
-        let place = &model.candidates[term.candidate].location;
-        *rod = match PIPES.iter().find(|(part, _)| *place == Location::Part(*part)) {
-            Some((_, pipe)) => with_stiffer(rod, *pipe, term.values[0]),
-            None => with_moduli(rod, term.values[0], term.values[0]),
-        };
+    write: |term, _, rod| {
+        *rod = with_moduli(rod, term.values[0], term.values[0]);
         WrittenTo::Model
     },
 };

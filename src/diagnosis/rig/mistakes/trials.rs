@@ -206,7 +206,8 @@ impl<'a> Table<'a> {
         own.is_some_and(|own| others.map(|other| own / other).any(|ratio| !near(ratio)))
     }
 
-    /// The slope of a line in one trial over that of the rod file; `None` where either shows little.
+    /// The slope of a line in one trial over that of the rod file; `None` where either shows
+    /// little.
     fn over_the_file(&self, trial: usize, k: usize) -> Option<f64> {
         let (by_rod, cells) = (self.by_rod?, &self.cells[trial]);
         let cell = cells[k]?;

@@ -1,4 +1,5 @@
-//! What is wrong with a structure: moduli, those of one pipe, the bend, joints, and where these are.
+//! What is wrong with a structure: moduli, those of one pipe, the bend, joints, and where these
+//! are.
 
 /// What is wrong with a structure.
 #[derive(Debug, Clone)]

@@ -182,6 +182,12 @@ fn of_one_sensor_the_place_is_open() {
         let is_there =
             |place: &str| law["location"] == place || rivals.iter().any(|rival| rival["location"] == place);
         assert!(["rod", "clamp", "root"].into_iter().all(is_there), "{law}");
+        // the stiffness that a curve takes is not that beside the law
+        let headline = answer.json["headline"].as_str().unwrap();
+        assert!(
+            headline.contains("A law is proposed for it") && !headline.contains("stiffness"),
+            "{headline}"
+        );
         // that it is a contact with a gap is seen
         assert!(may_be(law, "power after a gap"), "{law}");
     }

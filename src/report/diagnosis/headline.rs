@@ -51,7 +51,9 @@ fn answer(subject: &Subject) -> String {
     let findings = &diagnosis.findings;
     let law = subject.law.as_ref().and_then(law::brief).map_or_else(String::new, |law| format!(" {law}"));
     let remains = subject.remainder.as_ref().map(|left| format!("{}{law}", left.sentence));
-    let nominal = subject.nominal.as_ref().map_or_else(String::new, |words| format!(" {words}"));
+    // beside a law the numbers are others than beside the curve that they were found with
+    let nominal = subject.nominal.as_ref().filter(|_| law.is_empty());
+    let nominal = nominal.map_or_else(String::new, |words| format!(" {words}"));
     if findings.is_empty() {
         return match remains {
             Some(remains) => format!("{remains}{nominal} {}", capital(scatter(subject))),

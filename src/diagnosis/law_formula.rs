@@ -15,7 +15,7 @@ pub(super) fn formula(law: &Law, x: &str, is_signed: bool, direction: usize) -> 
     let corner = format!("{x}_0");
     // amplitudes are called as the law's are, `a_x`
     let named = |k: usize| law.amplitudes[direction * law.form.count() + k].symbol.as_str();
-    let (a, waves) = (named(0), law.form == Form::Harmonic);
+    let a = named(0);
     let powers = || {
         let term = |k: usize| match k {
             0 => format!("{}*{x}", named(k)),
@@ -23,21 +23,25 @@ pub(super) fn formula(law: &Law, x: &str, is_signed: bool, direction: usize) -> 
         };
         (0..law.form.count()).map(term).collect::<Vec<_>>().join(" + ")
     };
-    let b = if waves { named(1) } else { "" };
+    let b = if law.form.count() > 1 { named(1) } else { "" };
     let plain = match law.form {
         Form::Power => format!("{a}*{sign}({size}/{largest:?})^p"),
+        Form::PowerAfterGap if is_signed => format!("{sign}({a}*({size}/{largest:?})^p + {b})"),
+        Form::PowerAfterGap => format!("{a}*({size}/{largest:?})^p + {b}*step({x})"),
         Form::Saturation => format!("{a}*{sign}min({size}/{corner}, 1)"),
         Form::Threshold => format!("{a}*max({x} - {corner}, 0)"),
         Form::Step => format!("{a}*step({x} - {corner})"),
         Form::Approach => format!("{a}*{sign}(1 - exp(-{size}/{corner}))"),
         Form::Decay => format!("{a}*{sign}exp(-{size}/{corner})"),
+        Form::Settling if is_signed => format!("{sign}({a}*exp(-{size}/{corner}) + {b})"),
+        Form::Settling => format!("{a}*exp(-{size}/{corner}) + {b}"),
         Form::Logarithm => format!("{a}*{sign}ln(1 + {size}/{corner})"),
         Form::Harmonic => format!("{a}*(cos(2*pi*{x}/P) - 1) + {b}*sin(2*pi*{x}/P)"),
         Form::Polynomial(_) => powers(),
     };
     match law.memory {
         Memory::Side => format!("side*({plain})"),
-        Memory::None | Memory::Stop | Memory::BoucWen(_) | Memory::Lag => plain,
+        Memory::None | Memory::Stop | Memory::BoucWen(_) | Memory::Lag | Memory::Lagged => plain,
     }
 }
 

@@ -9,6 +9,7 @@ mod headline;
 mod hidden;
 mod json;
 mod law;
+mod lengths;
 
 pub(super) use json::load_plan;
 mod place;

@@ -231,3 +231,46 @@ fn a_real_arm_is_better_at_poses_that_it_has_not_seen() {
     let second = diagnose_calibrated(&again, after.clone()).unwrap();
     assert!(second.diagnosis.findings.is_empty(), "{:?}", second.diagnosis.findings);
 }
+
+/// `../shared/real`, where it is there: what the gears of a UR5 do in the middle fifth of the poses
+/// by one joint's angle, none of which was seen. 108 and 66 µm where this was written.
+#[test]
+#[allow(clippy::print_stderr)]
+fn gears_of_a_real_arm_are_known_where_nobody_has_looked() {
+    const JOINT: &str = "q3_deg";
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/real/ur5");
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
+    let (Some(rows), Some(robot), Some(text)) =
+        (read("measurements.csv"), read("robot.toml"), read("campaign.toml"))
+    else {
+        eprintln!("skipped: there is no ../shared/real/ur5");
+        return;
+    };
+    let rows: Vec<&str> = rows.lines().filter(|line| !line.starts_with('#')).collect();
+    let column = rows[0].split(',').position(|name| name == JOINT).unwrap();
+    let angle = |row: &str| row.split(',').nth(column).unwrap().parse::<f64>().unwrap();
+    let mut angles: Vec<f64> = rows[1..].iter().map(|row| angle(row)).collect();
+    angles.sort_by(f64::total_cmp);
+    let middle = angles[2 * angles.len() / 5]..angles[3 * angles.len() / 5];
+    let table = |out: bool| -> String {
+        let own = rows[1..].iter().filter(|row| middle.contains(&angle(row)) == out);
+        std::iter::once(&rows[0]).chain(own).map(|row| format!("{row}\n")).collect()
+    };
+    let (seen, unseen) = (table(false), table(true));
+    let open = |name: &str| {
+        Ok(match name {
+            "robot.toml" => robot.clone(),
+            "measurements.csv" => seen.clone(),
+            _ => unseen.clone(),
+        })
+    };
+    let text = format!("validation = 'validation.csv'\nvalidation_refit = 'none'\n{text}");
+    let campaign = Campaign::from_texts("campaign.toml", &text, &open).unwrap();
+    let before = calibrate(&campaign, Mode::None, &Options::default()).unwrap();
+    let found = diagnose_calibrated(&campaign, before.clone()).unwrap();
+    let applied = apply(&found, &names("robot.toml", Some("validation.csv")), &[]).unwrap().unwrap();
+    let again = written(&applied, &robot);
+    let after = calibrate(&again, Mode::None, &Options::default()).unwrap();
+    let mean = |found: &Calibration| found.validation.as_ref().unwrap().summary.mean;
+    assert!(mean(&after) < 0.75 * mean(&before), "{} and {}", mean(&before), mean(&after));
+}

@@ -103,6 +103,10 @@ fn a_gap_that_closes() {
     assert!((corner - 5.6).abs() < 0.1 && high - low < 0.3, "{law}");
     assert!((slope + 0.3).abs() < 0.02, "{law}");
     assert_confirmed(law);
+    // the first lines say it too
+    let headline = answer.json["headline"].as_str().unwrap();
+    let proposed = "A law is proposed for it: ΔF = k·max(F − F_0, 0), the effective load as a function of the load, at the rod, with k = -0.30";
+    assert!(headline.contains(proposed), "{headline}");
 }
 
 #[test]
@@ -139,6 +143,53 @@ fn friction_that_falls_with_the_load() {
     } else if said["proposed"] == true {
         assert!(said["memory"] != "none", "{said}");
         assert_confirmed(said);
+    }
+}
+
+/// The same, felt along two axes: one law with its level, not a law and a curve beside it.
+#[test]
+fn friction_that_falls_to_a_level_is_one_law() {
+    let spec = CaseSpec { unloading: true, ..spec() };
+    for seed in 60..63 {
+        let answer = concealed(&spec, seed, |row| {
+            let newtons = 0.3 * (0.4 + 0.6 * (-row.load / 2.5).exp());
+            -row.side * newtons * row.predicted / row.load
+        });
+        let law = law(&answer);
+        assert_eq!(law["form"], "exponential decay to a level", "{law}");
+        assert!(law["memory"] == "sign of the last move" && law["location"] == "rod", "{law}");
+        let [low, _, high] = constant(law, "F_0");
+        assert!(0.9 * low < 2.5 && 2.5 < 1.1 * high, "{law}");
+        assert!(law["second"].is_null() && law["beyond"]["may_be_used"] == true, "{law}");
+        assert_confirmed(law);
+        // written and read again it is the law
+        let correction = answer.found.correction().unwrap().unwrap();
+        let again = Answer::of(Some(&correction.rod_toml), &correction.readings_csv);
+        assert!(again.is_consistent(), "{}", again.json["headline"]);
+    }
+}
+
+/// One axis that one sensor reads: what follows the load follows the reading, and where it is made
+/// nobody can say. That it starts with a step does not tell the sensor from the rest.
+#[test]
+fn of_one_sensor_the_place_is_open() {
+    let loads = (0..16).map(|k| 1.5 + 1.2 * f64::from(k) + 0.3 * f64::from(k % 3)).collect();
+    let spec = CaseSpec { axes: vec![1], loads, trials: 5, noise: 3.0 * UM, unloading: true, ..spec() };
+    for seed in 70..73 {
+        let answer = concealed(&spec, seed, |row| 22.0 + 150.0 * (row.load / 20.0).powf(2.0 / 3.0));
+        let law = law(&answer);
+        let rivals = law["rivals"].as_array().unwrap();
+        let is_there =
+            |place: &str| law["location"] == place || rivals.iter().any(|rival| rival["location"] == place);
+        assert!(["rod", "clamp", "root"].into_iter().all(is_there), "{law}");
+        // the stiffness that a curve takes is not that beside the law
+        let headline = answer.json["headline"].as_str().unwrap();
+        assert!(
+            headline.contains("A law is proposed for it") && !headline.contains("stiffness"),
+            "{headline}"
+        );
+        // that it is a contact with a gap is seen
+        assert!(may_be(law, "power after a gap"), "{law}");
     }
 }
 

@@ -39,9 +39,12 @@ impl Choice {
         for memory in Memory::ALL.into_iter().filter(|memory| memory.range(site).is_some()) {
             for &form in site.forms {
                 let is_of = match memory {
-                    Memory::None => true,
-                    Memory::Side => !matches!(form, Form::Threshold | Form::Harmonic),
-                    Memory::Stop | Memory::BoucWen(_) | Memory::Lag => form == Form::Polynomial(1),
+                    // of what has one sign only a level is a zero
+                    Memory::None => form != Form::Settling || site.range().0 < 0.0,
+                    Memory::Side => !matches!(form, Form::PowerAfterGap | Form::Threshold | Form::Harmonic),
+                    Memory::Stop | Memory::BoucWen(_) | Memory::Lag | Memory::Lagged => {
+                        form == Form::Polynomial(1)
+                    }
                 };
                 let choice = Choice { site: number, form, memory };
                 if is_of && !choice.grid(site).is_empty() {
@@ -62,7 +65,7 @@ impl Choice {
         match self.memory {
             Memory::Stop => Some(FormConstant::Play),
             Memory::BoucWen(_) => Some(FormConstant::Yield),
-            Memory::Lag => Some(FormConstant::Lag),
+            Memory::Lag | Memory::Lagged => Some(FormConstant::Lag),
             Memory::None | Memory::Side => self.form.constant(),
         }
     }

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::beyond::{apart, comparable, further};
 use super::choice::Choice;
-use super::form::FormConstant;
 use super::measured::Measured;
 use super::memory::Memory;
 use super::proposed::{Beside, Law, LawRival, NextRecord, Point};
@@ -19,8 +19,6 @@ use crate::linalg::least_squares;
 
 /// How far beyond the data a law is asked to part from its rivals.
 const BEYOND: f64 = 2.0;
-/// How far beyond the data it is said how far laws are apart.
-const FURTHER: f64 = 1.5;
 /// How far apart they have to be, in standard deviations of a reading.
 const PARTED: f64 = 4.0;
 /// Points between nothing and [`BEYOND`].
@@ -115,7 +113,7 @@ pub(super) fn described(
     law.points = points(&law, best.choice, &residual);
     law.curve = smooth(&law.points, law.site.directions.len());
     law.next = next(&law);
-    law.further = further(&law);
+    law.further = further(&law, best, remainder, size);
     Some(law)
 }
 
@@ -195,62 +193,4 @@ fn next(law: &Law) -> Option<NextRecord> {
     let far = |x: &f64| apart(*x) > PARTED * law.noise;
     let at = within.filter(far).or_else(|| (0..=STEPS).map(x).filter(|x| *x > high).find(far))?;
     Some(NextRecord { rival: number, at, is_beyond: at > high, apart: apart(at) })
-}
-
-/// How far the law is apart beyond the data from its rivals at its place, and a wave from itself
-/// with another period: the variable there, and the largest distance, m.
-fn further(law: &Law) -> Option<(f64, f64)> {
-    let at = FURTHER * law.site.range().1;
-    let distances = comparable(law).map(|(_, rival)| apart(law, rival, at));
-    distances.chain(out_of_step(law)).reduce(f64::max).map(|most| (at, most))
-}
-
-/// How far a wave may be from what goes on half again beyond its data, m. Its phase is known in
-/// their middle: from there on it is out of step by φ = 2π·X·(1/P_low − 1/P_high)/2, and by a
-/// distance 2·A·sin(φ/2); of several periods by as much as there is.
-fn out_of_step(law: &Law) -> Option<f64> {
-    let Some((FormConstant::Period, period)) = &law.constant else { return None };
-    let count = law.form.count();
-    let amplitudes = law.values.0.chunks(count).zip(&law.site.directions).map(|(own, (_, weights))| {
-        let largest = weights.iter().fold(0.0, |most: f64, w| most.max(w.abs()));
-        own.iter().map(|a| a * a).sum::<f64>().sqrt() * largest
-    });
-    let largest = law.site.largest() / law.site.variable.si;
-    let phase = match period.also.is_empty() {
-        true => PI * largest * (1.0 / period.low - 1.0 / period.high),
-        false => PI,
-    };
-    amplitudes.reduce(f64::max).map(|amplitude| 2.0 * amplitude * (0.5 * phase.min(PI)).sin())
-}
-
-/// Rivals with their numbers that differ from the law in nothing but form and constants.
-fn comparable(law: &Law) -> impl Iterator<Item = (usize, &LawRival)> {
-    let is_alike = |rival: &LawRival| {
-        rival.memory.is(law.memory)
-            && rival.site.location == law.site.location
-            && rival.site.result == law.site.result
-            && rival.site.variable == law.site.variable
-    };
-    law.rivals.iter().enumerate().filter(move |(_, rival)| is_alike(rival))
-}
-
-/// How far two laws are apart at x, m, but for what zeros and stiffnesses take up.
-fn apart(law: &Law, rival: &LawRival, x: f64) -> f64 {
-    let per_result =
-        law.site.directions.iter().flat_map(|(_, w)| w).fold(0.0, |most: f64, w| most.max(w.abs()));
-    let of_direction = |direction: usize| {
-        let (level, slope) = nuisance_line(law, rival, direction);
-        (law.at(direction, x) - rival.at(direction, x) - level - slope * x).abs() * per_result
-    };
-    (0..law.site.directions.len()).map(of_direction).fold(0.0, f64::max)
-}
-
-/// What the nuisance space (zeros and stiffnesses) takes up of the difference of two laws: the
-/// straight line through it at the data, its level (m) and its slope (m per unit of the variable).
-fn nuisance_line(law: &Law, rival: &LawRival, direction: usize) -> (f64, f64) {
-    let own: Vec<f64> = law.points.iter().filter(|p| p.direction == direction).map(|p| p.x).collect();
-    let columns = DMatrix::from_fn(own.len(), 2, |i, j| if j == 0 { 1.0 } else { own[i] });
-    let differences = own.iter().map(|&x| law.at(direction, x) - rival.at(direction, x));
-    let values = DVector::from_iterator(own.len(), differences);
-    least_squares(&columns, &values).map_or((0.0, 0.0), |line| (line[0], line[1]))
 }

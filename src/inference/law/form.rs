@@ -9,6 +9,8 @@ use std::f64::consts::TAU;
 pub enum Form {
     /// a·ξᵖ.
     Power,
+    /// a·ξᵖ + g where ξ > 0: a contact with a gap before it.
+    PowerAfterGap,
     /// a·min(ξ/ξ₀, 1): it grows up to ξ₀ and no further.
     Saturation,
     /// a·max(ξ − ξ₀, 0): it grows from ξ₀ on.
@@ -19,6 +21,8 @@ pub enum Form {
     Approach,
     /// a·e^(−ξ/ξ₀).
     Decay,
+    /// a·e^(−ξ/ξ₀) + b: of what has a sign of its own, so that b is no zero.
+    Settling,
     /// a·ln(1 + ξ/ξ₀).
     Logarithm,
     /// a·(cos(2πf·ξ) − 1) + b·sin(2πf·ξ): readings are offsets from what was read at zero.
@@ -86,13 +90,15 @@ const LEVELS_OF_A_WAVE: usize = 6;
 
 impl Form {
     /// All of them.
-    pub const ALL: [Form; 11] = [
+    pub const ALL: [Form; 13] = [
         Form::Power,
+        Form::PowerAfterGap,
         Form::Saturation,
         Form::Threshold,
         Form::Step,
         Form::Approach,
         Form::Decay,
+        Form::Settling,
         Form::Logarithm,
         Form::Harmonic,
         Form::Polynomial(1),
@@ -103,6 +109,7 @@ impl Form {
     /// What gives way from zero on.
     pub const GIVING_WAY: &[Form] = &[
         Form::Power,
+        Form::PowerAfterGap,
         Form::Saturation,
         Form::Threshold,
         Form::Step,
@@ -134,11 +141,13 @@ impl Form {
     pub fn name(self) -> &'static str {
         match self {
             Form::Power => "power",
+            Form::PowerAfterGap => "power after a gap",
             Form::Saturation => "saturation",
             Form::Threshold => "threshold with slope",
             Form::Step => "step",
             Form::Approach => "exponential approach",
             Form::Decay => "exponential decay",
+            Form::Settling => "exponential decay to a level",
             Form::Logarithm => "logarithm",
             Form::Harmonic => "harmonic",
             Form::Polynomial(1) => "straight line",
@@ -150,7 +159,7 @@ impl Form {
     /// How many functions it has.
     pub fn count(self) -> usize {
         match self {
-            Form::Harmonic => 2,
+            Form::PowerAfterGap | Form::Harmonic | Form::Settling => 2,
             Form::Polynomial(degree) => degree as usize,
             _ => 1,
         }
@@ -159,9 +168,9 @@ impl Form {
     /// Its number that is not linear.
     pub fn constant(self) -> Option<FormConstant> {
         match self {
-            Form::Power => Some(FormConstant::Exponent),
+            Form::Power | Form::PowerAfterGap => Some(FormConstant::Exponent),
             Form::Saturation | Form::Threshold | Form::Step => Some(FormConstant::Corner),
-            Form::Approach | Form::Decay | Form::Logarithm => Some(FormConstant::Scale),
+            Form::Approach | Form::Decay | Form::Settling | Form::Logarithm => Some(FormConstant::Scale),
             Form::Harmonic => Some(FormConstant::Period),
             Form::Polynomial(_) => None,
         }
@@ -173,11 +182,14 @@ impl Form {
         let one = |value: f64| [value, 0.0, 0.0];
         match self {
             Form::Power => one(odd(&|xi| if xi == 0.0 { 0.0 } else { xi.powf(s) })),
+            Form::PowerAfterGap if xi == 0.0 => [0.0; 3],
+            Form::PowerAfterGap => [odd(&|xi| xi.powf(s)), odd(&|_| 1.0), 0.0],
             Form::Saturation => one(odd(&|xi| (xi / s).min(1.0))),
             Form::Threshold => one((xi - s).max(0.0)),
             Form::Step => one(if xi > s { 1.0 } else { 0.0 }),
             Form::Approach => one(odd(&|xi| -(-xi / s).exp_m1())),
             Form::Decay => one(odd(&|xi| (-xi / s).exp())),
+            Form::Settling => [odd(&|xi| (-xi / s).exp()), odd(&|_| 1.0), 0.0],
             Form::Logarithm => one(odd(&|xi| (xi / s).ln_1p())),
             Form::Harmonic => {
                 let (sin, cos) = (TAU * s * xi).sin_cos();
@@ -198,7 +210,16 @@ impl Form {
     }
 
     fn is_log(self) -> bool {
-        matches!(self, Form::Power | Form::Approach | Form::Decay | Form::Logarithm | Form::Harmonic)
+        match self {
+            Form::Power
+            | Form::PowerAfterGap
+            | Form::Approach
+            | Form::Decay
+            | Form::Settling
+            | Form::Logarithm
+            | Form::Harmonic => true,
+            Form::Saturation | Form::Threshold | Form::Step | Form::Polynomial(_) => false,
+        }
     }
 
     /// Coordinates of a first look at s over a variable from `low` to `high` (shares of X) with so
@@ -213,8 +234,8 @@ impl Form {
             return Vec::new();
         }
         match self {
-            Form::Power => logs(EXPONENTS),
-            Form::Approach | Form::Decay => logs(APPROACH),
+            Form::Power | Form::PowerAfterGap => logs(EXPONENTS),
+            Form::Approach | Form::Decay | Form::Settling => logs(APPROACH),
             Form::Logarithm => logs(LOGARITHM),
             Form::Saturation => between(SATURATION, POINTS),
             Form::Threshold | Form::Step => {
@@ -245,12 +266,16 @@ mod tests {
         assert_eq!(at(Form::Power, 0.25, 0.5), 0.5);
         assert_eq!(at(Form::Power, -0.25, 0.5), -0.5);
         assert_eq!(at(Form::Power, 0.0, 0.5), 0.0);
+        assert_eq!(Form::PowerAfterGap.functions(-0.25, 0.5), [-0.5, -1.0, 0.0]);
+        assert_eq!(Form::PowerAfterGap.functions(0.0, 0.5), [0.0; 3]);
         assert_eq!((at(Form::Saturation, 0.2, 0.4), at(Form::Saturation, 0.9, 0.4)), (0.5, 1.0));
         assert_eq!((at(Form::Threshold, 0.2, 0.5), at(Form::Threshold, 0.75, 0.5)), (0.0, 0.25));
         assert_eq!((at(Form::Step, 0.5, 0.5), at(Form::Step, 0.6, 0.5)), (0.0, 1.0));
         assert!((at(Form::Approach, 1.0, 1.0) - (1.0 - (-1.0f64).exp())).abs() < 1e-15);
         assert!((at(Form::Logarithm, 1.0, 0.5) - 3.0f64.ln()).abs() < 1e-15);
         assert!((at(Form::Decay, 1.0, 0.5) - (-2.0f64).exp()).abs() < 1e-15);
+        assert_eq!(Form::Settling.functions(0.0, 0.5), [1.0, 1.0, 0.0]);
+        assert_eq!(Form::Settling.functions(-0.5, 0.5), [-(-1.0f64).exp(), -1.0, 0.0]);
         // a quarter of a period on, the cosine is gone and the sine whole
         let [cos, sin, _] = Form::Harmonic.functions(0.25, 1.0);
         assert!((cos + 1.0).abs() < 1e-15 && (sin - 1.0).abs() < 1e-15);

@@ -7,7 +7,7 @@ use super::described::{Data, Known, alike, described};
 use super::folds::hold_out;
 use super::proposed::{Law, Second};
 use super::remainder::Remainder;
-use super::scan::{Scan, Scanned, refit, scan_as_recorded};
+use super::scan::{Scan, Scanned, refit, scan_as_predicted};
 use super::site::{Measure, Site};
 use crate::inference::search::selection::NAMED;
 use crate::inference::{Evidence, Location};
@@ -52,7 +52,7 @@ pub(super) fn left_beside(
     let with = with_columns(evidence, &columns);
     let mut beside = sites_with(&known.remainder.fit(&columns).own);
     let remainder = Remainder::new(model, &with, terms, rows(evidence), sigma);
-    let mut found = scan_as_recorded(&remainder, &mut beside, (size, sigma), |_| true);
+    let mut found = scan_as_predicted(&remainder, &mut beside, size, |_| true);
     let tried: Vec<Choice> = found.laws.iter().take(TRIED).map(|law| law.choice).collect();
     refit(&mut found, &remainder, &beside, size);
     let Some(best) = found.laws.first().filter(|law| law.log_odds > NAMED.ln()) else {
@@ -82,6 +82,13 @@ pub(super) fn left_beside(
         }
         None => something,
     }
+}
+
+/// Ln of what the data are likelier with a curve's columns, where those of a law are free already.
+pub(super) fn gain_beside(data: &Data, law: &DMatrix<f64>, curve: &DMatrix<f64>) -> f64 {
+    let &Data { model, evidence, terms, sigma, .. } = data;
+    let with = with_columns(evidence, &(law * WIDE));
+    Remainder::new(model, &with, terms, rows(evidence), sigma).gain(curve)
 }
 
 /// Columns of two laws.
@@ -146,7 +153,7 @@ impl Both {
         let with = with_columns(evidence, &self.0[1 - free]);
         let remainder = Remainder::new(model, &with, terms, rows(evidence), sigma);
         let is_tried = |choice: &Choice| tried.is_none_or(|tried| tried.iter().any(|own| own.is(choice)));
-        let mut found = scan_as_recorded(&remainder, &mut sites, (size, sigma), is_tried);
+        let mut found = scan_as_predicted(&remainder, &mut sites, size, is_tried);
         refit(&mut found, &remainder, &sites, size);
         let data = Data { evidence: &with, ..known.data };
         let beside = Known { data, sites: &sites, remainder: &remainder, background: known.background };
@@ -171,7 +178,7 @@ impl Both {
         let mut sites = sites_with(&(one + other));
         let with = with_columns(&with_columns(evidence, &self.0[0]), &self.0[1]);
         let remainder = Remainder::new(model, &with, terms, rows(evidence), sigma);
-        let found = scan_as_recorded(&remainder, &mut sites, (size, sigma), |_| true);
+        let found = scan_as_predicted(&remainder, &mut sites, size, |_| true);
         let of_laws = found.laws.first().map_or(f64::NEG_INFINITY, |law| law.log_odds);
         of_laws.max(found.curve.map_or(f64::NEG_INFINITY, |(_, odds)| odds)) > NAMED.ln()
     }

@@ -130,7 +130,9 @@ fn names(site: &Site, form: Form) -> Vec<(String, String, String, f64)> {
         Form::Step => vec![("a", "height", 0)],
         Form::Saturation | Form::Approach => vec![("a", "final value", 0)],
         Form::Decay => vec![("a", "first value", 0)],
+        Form::Settling => vec![("a", "first value above the level", 0), ("b", "level", 0)],
         Form::Power => vec![("a", "value at the largest", 0)],
+        Form::PowerAfterGap => vec![("a", "value at the largest after the gap", 0), ("g", "gap", 0)],
         Form::Logarithm => vec![("a", "factor", 0)],
         Form::Polynomial(1) => vec![("c1", "slope", 1)],
         Form::Polynomial(degree) => {

@@ -18,12 +18,21 @@ pub enum Memory {
     BoucWen(LoopShape),
     /// What a first-order lag of time τ still lacks: x − x̃, dx̃/dt = (x − x̃)/τ.
     Lag,
+    /// Its lagged self since the start, x̃ − x_0, of what changes evenly between two readings, as
+    /// temperatures do: the zero was taken then.
+    Lagged,
 }
 
 impl Memory {
     /// All of them.
-    pub const ALL: [Memory; 5] =
-        [Memory::None, Memory::Side, Memory::Stop, Memory::BoucWen(LoopShape::MIDDLE), Memory::Lag];
+    pub const ALL: [Memory; 6] = [
+        Memory::None,
+        Memory::Side,
+        Memory::Stop,
+        Memory::BoucWen(LoopShape::MIDDLE),
+        Memory::Lag,
+        Memory::Lagged,
+    ];
 
     /// For people and JSON.
     pub fn name(self) -> &'static str {
@@ -33,6 +42,7 @@ impl Memory {
             Memory::Stop => "stop operator",
             Memory::BoucWen(_) => "Bouc–Wen loop",
             Memory::Lag => "first-order lag",
+            Memory::Lagged => "lagged self",
         }
     }
 
@@ -40,7 +50,7 @@ impl Memory {
     pub fn has_constant(self) -> bool {
         match self {
             Memory::None | Memory::Side => false,
-            Memory::Stop | Memory::BoucWen(_) | Memory::Lag => true,
+            Memory::Stop | Memory::BoucWen(_) | Memory::Lag | Memory::Lagged => true,
         }
     }
 
@@ -48,7 +58,7 @@ impl Memory {
     pub fn shape(self) -> Option<LoopShape> {
         match self {
             Memory::BoucWen(shape) => Some(shape),
-            Memory::None | Memory::Side | Memory::Stop | Memory::Lag => None,
+            Memory::None | Memory::Side | Memory::Stop | Memory::Lag | Memory::Lagged => None,
         }
     }
 
@@ -68,14 +78,20 @@ impl Memory {
             Memory::Stop => Some((0.02, 0.5)),
             // it is nearly a straight line up to r, and bends from half of that on
             Memory::BoucWen(_) => Some((0.02, 1.0)),
-            Memory::Lag => {
+            // of a load it is what the load itself is, less what it lacks
+            Memory::Lagged if !site.moves.is_empty() => None,
+            Memory::Lag | Memory::Lagged => {
                 let waits =
                     || site.courses.iter().flat_map(|course| course.instants.iter().map(|i| i.elapsed));
                 let known = waits().filter(|wait| *wait > 0.0);
                 let shortest = known.fold(f64::INFINITY, f64::min);
-                let longest = waits().fold(0.0, f64::max);
+                // a load is what it is from one reading to the next; all else has changed before
+                let longest = match site.moves.is_empty() {
+                    true => waits().sum::<f64>(),
+                    false => 3.0 * waits().fold(0.0, f64::max),
+                };
                 let is_known = shortest.is_finite() && waits().all(f64::is_finite);
-                is_known.then_some((0.3 * shortest, 3.0 * longest))
+                is_known.then_some((0.3 * shortest, longest))
             }
         }
     }
@@ -111,6 +127,16 @@ impl Memory {
                     lacks
                 };
                 (along(site, |start| start, lag), None)
+            }
+            Memory::Lagged => {
+                let lagged = |(start, before, own): &mut (f64, f64, f64), x: f64, elapsed: f64| {
+                    // of x = x₀ + s·t: x̃ = x − s·τ + (x̃₀ − x₀ + s·τ)·e^(−t/τ)
+                    let behind = if elapsed > 0.0 { (x - *before) / elapsed * constant } else { 0.0 };
+                    *own = x - behind + (*own - *before + behind) * (-elapsed / constant).exp();
+                    *before = x;
+                    *own - *start
+                };
+                (along(site, |start| (start, start, start), lagged), None)
             }
         }
     }
@@ -199,6 +225,24 @@ mod tests {
         let first = 0.5 * (1.0 - (-4.0f64).exp());
         let second = 0.5 * (1.0 - (-8.0 + first / 0.5).exp());
         assert!((followed[0] - first).abs() < 1e-5 && (followed[1] - second).abs() < 1e-5, "{followed:?}");
+    }
+
+    /// Behind what grows evenly it stays by what grows in τ.
+    #[test]
+    fn a_lagged_self_comes_behind() {
+        let mut site = site(&[0.0, 2.0, 4.0, 6.0, 100.0]);
+        site.moves.clear();
+        assert_eq!(Memory::Lagged.range(&site), Some((0.6, 10.0)));
+        let (followed, _) = Memory::Lagged.remembered(&site, 0.5);
+        assert!((followed[3] - 5.5).abs() < 1e-4, "{followed:?}");
+        let exact = |t: f64| t - 0.5 + 0.5 * (-t / 0.5).exp();
+        assert!((followed[1] - exact(2.0)).abs() < 1e-12, "{followed:?}");
+        site.courses[0].start = -1.0;
+        let (later, _) = Memory::Lagged.remembered(&site, 1e-3);
+        assert!((later[3] - 7.0).abs() < 0.01, "{later:?}");
+        // of a load it says nothing that the load and what it lacks do not say
+        site.moves = vec![1.0; 5];
+        assert_eq!(Memory::Lagged.range(&site), None);
     }
 
     #[test]

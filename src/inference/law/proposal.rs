@@ -5,10 +5,10 @@ use nalgebra::{DMatrix, DVector};
 use super::choice::Choice;
 use super::described::{Data, Known, alike, described};
 use super::folds::{WORTH, hold_out};
-use super::left::{Alone, Left, left_beside};
+use super::left::{Alone, Left, gain_beside, left_beside};
 use super::proposed::{Law, Proposed, Refusal};
 use super::remainder::Remainder;
-use super::scan::{prior, refit, scan, scan_as_recorded};
+use super::scan::{prior, refit, scan, scan_as_predicted};
 use super::site::Site;
 use crate::inference::model::evidence::rms;
 use crate::inference::noise::scatter::weighted;
@@ -24,7 +24,7 @@ const LITTLE: f64 = 0.5;
 
 /// A law for what `diagnosis` left unexplained; `None` where nothing was, or where what is left is
 /// no law's: single readings, numbers of a file, errors that wander. `sites` are all places for it,
-/// given what findings, nominal numbers and zeros change of each datum.
+/// given what findings and nominal numbers change of each datum.
 pub fn propose(
     model: &dyn ForwardModel,
     diagnosis: &Diagnosis,
@@ -58,7 +58,7 @@ pub fn propose(
         }
     };
     let remainder = Remainder::new(model, evidence, terms, rows(), sigma);
-    let mut found = scan_as_recorded(&remainder, &mut all, (size, sigma), |_| true);
+    let mut found = scan_as_predicted(&remainder, &mut all, size, |_| true);
     let best_odds = found.laws.first().map_or(0.0, |law| law.log_odds);
     let reach = (best_odds - REACH).max(UNLIKELY);
     let within_reach = found.laws.iter().take_while(|law| law.log_odds > reach);
@@ -66,21 +66,27 @@ pub fn propose(
     refit(&mut found, &remainder, &all, size);
     let lives = found.curve.map(|(site, _)| (all[site].location.clone(), all[site].variable.clone()));
     let refused = |refusal, held_out| Some(Proposed { law: Err(refusal), lives: lives.clone(), held_out });
-    // the curve that the diagnosis has found competes too; of one number it is a law itself
-    let is_curve = |&candidate: &usize| model.candidates()[candidate].parameters.len() > 1;
-    let own_curve = left.candidate.filter(is_curve).map_or(f64::NEG_INFINITY, |curve| {
-        let term = model.candidates()[curve].neutral(curve);
-        let curves = model.candidates().iter().filter(|candidate| candidate.is_nonparametric);
-        remainder.fit(&model.columns(&[term], 0)).gain + prior(curves.count(), 1)
-    });
-    let curve_odds = found.curve.map_or(own_curve, |(_, odds)| odds.max(own_curve));
     let Some(best) = found.laws.first() else { return refused(Refusal::Chance, None) };
     if best.log_odds < NAMED.ln() {
         return refused(Refusal::Chance, None);
     }
+    let data = Data { model, evidence, terms, size, sigma };
+    // the curve that the diagnosis has found competes too; of one number it is a law itself
+    let is_curve = |&candidate: &usize| model.candidates()[candidate].parameters.len() > 1;
+    let own_curve = left.candidate.filter(is_curve).map_or(f64::NEG_INFINITY, |curve| {
+        let columns = model.columns(&[model.candidates()[curve].neutral(curve)], 0);
+        let curves = model.candidates().iter().filter(|candidate| candidate.is_nonparametric);
+        let prior = prior(curves.count(), 1);
+        // what the law says as well is no other than it: a wave that was found among a few periods
+        let law = best.choice.columns(&all[best.choice.site], best.at, size).columns;
+        match gain_beside(&data, &law, &columns) + prior > 0.0 {
+            true => remainder.fit(&columns).gain + prior,
+            false => f64::NEG_INFINITY,
+        }
+    });
+    let curve_odds = found.curve.map_or(own_curve, |(_, odds)| odds.max(own_curve));
     // two laws may make the curve together
     let behind = curve_odds - best.log_odds;
-    let data = Data { model, evidence, terms, size, sigma };
     let class = alike(&found, best);
     let choices: Vec<Choice> = class.iter().map(|law| law.choice).collect();
     let folds = hold_out(&data, &all, (&choices, &tried));
@@ -114,7 +120,7 @@ pub fn propose(
     Some(Proposed { law: Ok(law), lives, held_out: errors })
 }
 
-/// What nominal numbers and zeros are, once a curve stands for what is left.
+/// What nominal numbers change of each datum, once a curve stands for what is left.
 fn known(model: &dyn ForwardModel, diagnosis: &Diagnosis, curve: Option<usize>) -> DVector<f64> {
     let (evidence, sigma) = (&diagnosis.settled.0, diagnosis.settled.1);
     let rows: Vec<usize> = (0..evidence.residual.len()).collect();

@@ -76,9 +76,10 @@ pub struct Law {
     pub rivals: Vec<LawRival>,
     /// What would distinguish it from the likeliest rival at its place.
     pub next: Option<NextRecord>,
-    /// Half again beyond the data: the variable there (SI), and how far law and rivals at its place
-    /// are apart, m, but for a straight line, or a wave and itself with another of its periods;
-    /// `None` where there is neither.
+    /// Half again beyond the data: the variable there (SI), and how far off the law may be, m, but
+    /// for a straight line: from rivals at its place, from a wave with another of its periods, and
+    /// by two standard deviations of what its own constants leave open; `None` of a straight line,
+    /// and of a law that remembers, where they have no rival.
     pub further: Option<(f64, f64)>,
     /// Data as it sees them: what is left but for the law.
     pub points: Vec<Point>,

@@ -56,7 +56,8 @@ pub(super) struct Fitted {
     /// All data as predicted, and what the columns are of that.
     pub predicted: DVector<f64>,
     pub own: DVector<f64>,
-    /// What the background is of it: nominal numbers and zeros.
+    /// What the zeros are of it, and the rest of the background: nominal numbers.
+    pub zeros: DVector<f64>,
     pub background: DVector<f64>,
     /// Factors of the background, and of the findings' columns about their values.
     pub base: DVector<f64>,
@@ -132,9 +133,17 @@ impl<'a> Remainder<'a> {
         self.whitening.without_shared(residual)
     }
 
-    /// Numbers of what was recorded under the same conditions.
-    pub fn repeats(&self) -> &[usize] {
-        &self.whole.replicate_group
+    /// What of each residual is none of the displacement where a law is fitted with all else: what
+    /// that leaves, the zeros, and the law.
+    pub fn no_displacement(&self, columns: &DMatrix<f64>) -> DVector<f64> {
+        let fitted = self.fit(columns);
+        &self.whole.residual - fitted.predicted + fitted.own + fitted.zeros
+    }
+
+    /// Columns of the background that are zeros.
+    fn zeros(&self) -> std::ops::Range<usize> {
+        let (first, known) = (self.whole.folded.end, self.whole.background.ncols());
+        first.min(known)..(first + self.whole.offsets.ncols()).min(known)
     }
 
     fn own(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
@@ -222,7 +231,9 @@ impl<'a> Remainder<'a> {
         let own_factors = scored.estimate.rows(first, count).into_owned();
         let own = columns * &own_factors;
         let known = self.whole.background.ncols();
-        let background = &self.whole.background * scored.estimate.rows(0, known);
+        let (known, zeros) = (scored.estimate.rows(0, known), self.zeros());
+        let zeros = self.whole.background.columns_range(zeros.clone()) * known.rows_range(zeros);
+        let background = &self.whole.background * known - &zeros;
         let explained = &self.base * scored.estimate.rows(0, first) + &own;
         let predicted = &self.whole.residual - &self.left + self.with_nuisance(explained);
         Fitted {
@@ -231,6 +242,7 @@ impl<'a> Remainder<'a> {
             factors: own_factors,
             predicted,
             own,
+            zeros,
             background,
             base: scored.estimate.rows(0, first).into_owned(),
             degrees_of_freedom: (moments.degrees_of_freedom as f64 - scored.determined).max(1.0),

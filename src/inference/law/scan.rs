@@ -1,7 +1,6 @@
 //! All laws at all sites, each by its evidence, and the smooth curves that they compete with.
 
 use nalgebra::{DMatrix, Vector3};
-use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use super::bouc_wen::LoopShape;
@@ -15,8 +14,6 @@ use crate::inference::score::priors::PRIOR;
 use crate::inference::search::selection::APART;
 use crate::parallel::in_parallel;
 
-/// So many times the noise a recorded variable ranges over at least.
-const ABOVE_NOISE: f64 = 30.0;
 /// Columns of a smooth curve.
 const CURVE: usize = 6;
 /// Laws whose evidence at the best point is so far (ln) behind the best need no closer look.
@@ -92,34 +89,30 @@ pub(super) fn scan(remainder: &Remainder, sites: &[Site], size: f64) -> Scan {
     scan_some(remainder, sites, size, |_| true)
 }
 
-/// The same where the likeliest law may be a function of what was recorded: that stands, without
-/// the law, in the place of what was predicted then, unless noise would be as large as the
-/// variable.
-pub(super) fn scan_as_recorded(
+/// The same where the likeliest law may be a function of what a sensor should have shown: that is
+/// what is predicted with the law there, for the stiffness that is fitted beside it is another.
+/// What was recorded is no stand-in: what the law misses would explain itself by it.
+pub(super) fn scan_as_predicted(
     remainder: &Remainder,
     sites: &mut [Site],
-    (size, sigma): (f64, f64),
+    size: f64,
     is_tried: impl Fn(&Choice) -> bool + Sync,
 ) -> Scan {
     let found = scan_some(remainder, sites, size, &is_tried);
     let Some(best) = found.laws.first() else { return found };
     let site = &sites[best.choice.site];
-    let (low, high) = site.range();
-    let Some(recorded) = site.recorded.as_ref().filter(|_| high - low > ABOVE_NOISE * sigma) else {
-        return found;
-    };
+    let Some(recorded) = site.recorded.as_ref() else { return found };
     // with each of its values the variable is another: each is tried with its own
     let (number, choice) = (best.choice.site, best.choice);
-    let as_recorded = |u: f64| {
-        let own = remainder.fit(&choice.columns(site, u, size).columns).own;
-        let without = recorded.iter().zip(own.iter()).map(|(value, own)| value - own);
-        by_others(without, site, remainder.repeats())
+    let as_predicted = |u: f64| -> Vec<f64> {
+        let other = remainder.no_displacement(&choice.columns(site, u, size).columns);
+        recorded.iter().zip(other.iter()).map(|(value, other)| value - other).collect()
     };
     let below = FAR.max(MISSED * best.posterior.best().1);
     let tried = best.posterior.highest(MOST_TRIED, (below, APART.ln()));
     let mut each: Vec<(Vec<f64>, Scanned)> = in_parallel(tried.len(), |k| {
         let mut own = sites.to_vec();
-        own[number].values = as_recorded(tried[k]);
+        own[number].values = as_predicted(tried[k]);
         let found = scan_some(remainder, &own, size, |other| other.is(&choice)).laws.into_iter().next()?;
         Some((own.swap_remove(number).values, found))
     })
@@ -139,25 +132,6 @@ pub(super) fn scan_as_recorded(
         law.also = others;
     }
     found
-}
-
-/// What each datum should show, by what the others of its repeats were off from the prediction. By
-/// what it was off itself its own noise would be explained: a wave that all loads meet at the same
-/// phase is a straight line of it. What was recorded once is as it is predicted.
-fn by_others(recorded: impl Iterator<Item = f64>, site: &Site, repeats: &[usize]) -> Vec<f64> {
-    let off: Vec<f64> =
-        recorded.zip(&site.values).map(|(recorded, predicted)| recorded - predicted).collect();
-    let mut sums: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
-    for i in site.concerned() {
-        let sum = sums.entry(repeats[i]).or_default();
-        *sum = (sum.0 + off[i], sum.1 + 1.0);
-    }
-    let mut values = site.values.clone();
-    for i in site.concerned() {
-        let (sum, count) = sums[&repeats[i]];
-        values[i] += if count > 1.0 { (sum - off[i]) / (count - 1.0) } else { 0.0 };
-    }
-    values
 }
 
 /// The likeliest laws and the curve, all else fitted anew with each at its best; the others go.

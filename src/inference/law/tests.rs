@@ -106,6 +106,109 @@ fn the_interval_of_an_exponent_holds_the_truth() {
     assert!(known >= 30 && held * 20 >= 17 * known, "{held} of {known}");
 }
 
+/// A wave that the diagnosis has found among a few periods is no rival of the wave itself, however
+/// little a period costs there.
+#[test]
+fn a_curve_that_says_no_more_than_the_law_is_no_rival() {
+    let mut model = Columns::new(COUNT);
+    let turns = |row: usize, period: f64| std::f64::consts::TAU * load(row) / period;
+    let wave = |row: usize, k: usize| if k == 0 { turns(row, 3.75).sin() } else { turns(row, 3.75).cos() };
+    model.add("swing", "load", DMatrix::from_fn(COUNT, 2, wave), true);
+    for seed in 0..8 {
+        let mut random = Random::seeded(700 + seed, 0);
+        let residual = (0..COUNT).map(|row| 2.0 * turns(row, 3.7).sin() + random.normal());
+        let evidence = Evidence {
+            replicate_group: (0..COUNT).map(|row| row % LEVELS).collect(),
+            fold: (0..COUNT).map(|row| row / LEVELS).collect(),
+            ..Evidence::new(DVector::from_iterator(COUNT, residual))
+        };
+        let proposed = propose(&model, &diagnose(&model, &evidence), &site).unwrap();
+        let law = proposed.law.unwrap_or_else(|refusal| panic!("{seed}: {refusal:?}"));
+        assert_eq!(law.form, Form::Harmonic);
+    }
+}
+
+/// What a body does that warms through, a reading a minute: with its time constant, however much
+/// longer than a minute that is.
+#[test]
+fn what_lags_behind_a_temperature_has_its_time() {
+    const TIME: f64 = 700.0;
+    let minute = |k: usize| 60.0 * k as f64;
+    let temperature = |t: f64| 3.0 + 2.0 * (t / 410.0).sin() + 1.2 * (t / 173.0 + 0.4).cos();
+    // by the differential equation, in steps of a second
+    let mut lagged = vec![temperature(0.0)];
+    for k in 1..COUNT {
+        let seconds = (0..60).map(|s| minute(k - 1) + f64::from(s) + 0.5);
+        let last = seconds.fold(lagged[k - 1], |own, t| own + (temperature(t) - own) / TIME);
+        lagged.push(last);
+    }
+    let mut model = Columns::new(COUNT);
+    let wave = |row: usize, k: usize| (std::f64::consts::PI * k as f64 * row as f64 / COUNT as f64).cos();
+    model.add("curve", "time", DMatrix::from_fn(COUNT, 6, wave), true);
+    let mut random = Random::seeded(11, 0);
+    let residual = lagged.iter().map(|own| 12.0 * (own - lagged[0]) + random.normal());
+    let evidence = Evidence {
+        replicate_group: (0..COUNT).collect(),
+        fold: (0..COUNT).map(|row| row / LEVELS).collect(),
+        ..Evidence::new(DVector::from_iterator(COUNT, residual))
+    };
+    let sites = |_: &DVector<f64>| {
+        let instant =
+            |k: usize| Instant { data: vec![k], elapsed: if k == 0 { 0.0 } else { 60.0 }, sense: 1.0 };
+        let course = Course { instants: (0..COUNT).map(instant).collect(), start: temperature(0.0) };
+        let values = (0..COUNT).map(|k| temperature(minute(k))).collect();
+        let [own] = site(&DVector::zeros(0)).try_into().unwrap();
+        vec![Site { values, moves: Vec::new(), courses: vec![course], forms: Form::FROM_ANYWHERE, ..own }]
+    };
+    let law = propose(&model, &diagnose(&model, &evidence), &sites).unwrap().law.unwrap();
+    let (what, tau) = law.constant.clone().unwrap();
+    assert_eq!((law.memory, what), (Memory::Lagged, FormConstant::Lag));
+    assert!(tau.low < TIME && TIME < tau.high && tau.high < 1.3 * tau.low, "{tau:?}");
+    assert!((law.amplitudes[0].value / 12.0 - 1.0).abs() < 0.1, "{:?}", law.amplitudes);
+}
+
+/// Half again beyond the data the truth is as near as a law says of itself, by two standard
+/// deviations: 40 recordings, 34 at least.
+#[test]
+fn a_law_without_a_rival_says_how_far_off_it_may_be() {
+    let (mut held, mut known) = (0, 0);
+    for seed in 0..40 {
+        let truth = |f: f64| 15.0 * (f / 4.0).min(1.0);
+        let (_, found) = proposed(500 + seed, truth);
+        let Some(Ok(law)) = found.map(|found| found.law) else { continue };
+        if !law.rivals.is_empty() || law.form != Form::Saturation {
+            continue;
+        }
+        let (at, open) = law.further.unwrap();
+        assert_eq!(at, 18.0);
+        // zeros and stiffnesses take up a straight line
+        let xs: Vec<f64> = (1..=12).map(f64::from).collect();
+        let columns = DMatrix::from_fn(12, 2, |i, j| if j == 0 { 1.0 } else { xs[i] });
+        let off = DVector::from_iterator(12, xs.iter().map(|&f| law.at(0, f) - truth(f)));
+        let line = crate::linalg::least_squares(&columns, &off).unwrap();
+        known += 1;
+        held += usize::from((law.at(0, at) - truth(at) - line[0] - line[1] * at).abs() <= open);
+    }
+    assert!(known >= 30 && held * 20 >= 17 * known, "{held} of {known}");
+}
+
+/// A second law is the first one again where it does the same to the data at the same place.
+#[test]
+fn a_law_is_repeated_by_what_does_the_same_there() {
+    let law = law_of(2, |f| 8.0 * (std::f64::consts::TAU * f / 3.7).sin());
+    let mut twice = law.clone();
+    twice.adds.iter_mut().for_each(|add| *add *= -0.3);
+    assert!(law.repeats(&twice));
+    // a wave of another period is another law
+    let other = law_of(2, |f| 8.0 * (std::f64::consts::TAU * f / 5.9).sin());
+    assert!(other.form == law.form && !law.repeats(&other));
+    let mut elsewhere = law.clone();
+    elsewhere.site.location = Location::Part(Part::Root);
+    let mut form = law.clone();
+    form.form = Form::Polynomial(1);
+    assert!(!law.repeats(&elsewhere) && !law.repeats(&form));
+}
+
 #[test]
 fn of_noise_and_of_what_is_explained_there_is_no_law() {
     for seed in 0..20 {

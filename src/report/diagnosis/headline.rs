@@ -1,9 +1,11 @@
 //! The first lines of a diagnosis: what was found, and what it is worth.
 
+use super::law;
+pub use super::lengths::{size, um};
 use super::subject::Subject;
 use crate::diagnosis::Limitation;
 use crate::inference::{Diagnosis, Finding, Kind, Location, WrittenTo};
-use crate::units::{MM, UM, capital, significant, uncapital};
+use crate::units::{capital, significant, uncapital};
 
 /// So many findings are said in full; more are named.
 const IN_FULL: usize = 2;
@@ -47,8 +49,11 @@ pub fn headline(subject: &Subject) -> String {
 fn answer(subject: &Subject) -> String {
     let diagnosis = subject.diagnosis;
     let findings = &diagnosis.findings;
-    let remains = subject.remainder.as_ref().map(|left| left.sentence.clone());
-    let nominal = subject.nominal.as_ref().map_or_else(String::new, |words| format!(" {words}"));
+    let law = subject.law.as_ref().and_then(law::brief).map_or_else(String::new, |law| format!(" {law}"));
+    let remains = subject.remainder.as_ref().map(|left| format!("{}{law}", left.sentence));
+    // beside a law the numbers are others than beside the curve that they were found with
+    let nominal = subject.nominal.as_ref().filter(|_| law.is_empty());
+    let nominal = nominal.map_or_else(String::new, |words| format!(" {words}"));
     if findings.is_empty() {
         return match remains {
             Some(remains) => format!("{remains}{nominal} {}", capital(scatter(subject))),
@@ -109,7 +114,7 @@ fn are_minor(subject: &Subject) -> bool {
 /// How the data scatter: noise only where somebody stated it; what repeats show; else of unknown
 /// origin.
 fn scatter(subject: &Subject) -> String {
-    let (test, noise) = (&subject.diagnosis.noise_test, noise(subject.diagnosis));
+    let (test, noise) = (&subject.diagnosis.noise_test, noise(subject));
     match (test.stated, &subject.diagnosis.lack_of_fit_after) {
         (Some(stated), _) => format!("noise is {noise} (stated: {} µm).", um(stated)),
         (None, Some(_)) => format!("the repeats scatter by {noise}{}.", subject.per),
@@ -119,7 +124,7 @@ fn scatter(subject: &Subject) -> String {
 
 /// The same of what is left: `the scatter of the repeats`.
 fn scatter_of(subject: &Subject) -> String {
-    let (test, noise) = (&subject.diagnosis.noise_test, noise(subject.diagnosis));
+    let (test, noise) = (&subject.diagnosis.noise_test, noise(subject));
     let without = match subject.diagnosis.suspects.len() {
         0 => String::new(),
         1 => " without the suspect reading".to_owned(),
@@ -139,14 +144,18 @@ fn scatter_of(subject: &Subject) -> String {
 
 /// `1.6 µm`; where it is far more than was stated, and does not contradict that, what of it is
 /// whose.
-fn noise(diagnosis: &Diagnosis) -> String {
+fn noise(subject: &Subject) -> String {
+    let diagnosis = subject.diagnosis;
     let (test, ratio) = (&diagnosis.noise_test, diagnosis.shared_ratio);
-    let is_more = test.stated.is_some_and(|stated| diagnosis.noise > MORE_THAN_STATED * stated);
+    // beside a law as much is left as it leaves
+    let laws = subject.law.iter().flat_map(|own| own.proposed.laws());
+    let noise = laws.map(|law| law.noise).fold(diagnosis.noise, f64::min);
+    let is_more = test.stated.is_some_and(|stated| noise > MORE_THAN_STATED * stated);
     if !is_more || test.is_contradicted() || ratio <= 0.0 {
-        return format!("{} µm", um(diagnosis.noise));
+        return format!("{} µm", um(noise));
     }
     // σ² of a reading is that of its run's zero and its own
-    let own = diagnosis.noise / (1.0 + ratio).sqrt();
+    let own = noise / (1.0 + ratio).sqrt();
     format!("{} µm of the readings and {} µm of the zeros of the runs", um(own), um(own * ratio.sqrt()))
 }
 
@@ -332,14 +341,6 @@ pub fn cause_at(finding: &Finding) -> String {
     (finding.effect.cause_at)(&finding.location)
 }
 
-/// A length with its unit: µm below a millimetre, else mm.
-pub fn size(length: f64) -> String {
-    match length.abs() < MM {
-        true => format!("{} µm", um(length)),
-        false => format!("{} mm", significant(length / MM, 3)),
-    }
-}
-
 /// How an error falls: `from 109 to 51 µm`, `from 331 mm to 23 µm`.
 fn from_to(before: f64, after: f64) -> String {
     let (first, last) = (size(before), size(after));
@@ -347,11 +348,6 @@ fn from_to(before: f64, after: f64) -> String {
         (Some((number, unit)), Some((_, same))) if unit == same => format!("from {number} to {last}"),
         _ => format!("from {first} to {last}"),
     }
-}
-
-/// A length in µm with as many digits as are read.
-pub fn um(length: f64) -> String {
-    significant(length / UM, if length.abs() < 0.995e-4 { 2 } else { 3 })
 }
 
 #[cfg(test)]

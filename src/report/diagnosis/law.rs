@@ -5,7 +5,7 @@ mod expression;
 use serde_json::{Value, json};
 
 use self::expression::{Expression, expression};
-use super::headline::um;
+use super::lengths::um;
 use super::place::place;
 use super::subject::{LawNote, LawSubject};
 use crate::inference::law::{Constant, Law, LawRival, Memory, Proposed, Refusal, Site};
@@ -166,11 +166,60 @@ fn with_unit(number: String, unit: &str) -> String {
     if unit.is_empty() { number } else { format!("{number} {unit}") }
 }
 
-/// The law, its numbers and what it is worth; the second one stands beside the first.
-fn summary(law: &Law, number: usize, proposed: &Proposed) -> String {
+/// What is proposed, for the first lines of a report: the law with its numbers, what these data do
+/// not distinguish from it, and what it is worth.
+pub fn brief(subject: &LawSubject) -> Option<String> {
+    let proposed = subject.proposed;
+    let law = proposed.law.as_ref().ok()?;
+    let (with, second) = match &law.second {
+        Some(second) => ("both", format!(", and {}", formula(&second.law))),
+        None => ("it", String::new()),
+    };
+    let worth =
+        proposed.held_out.zip(proposed.held_out_with()).map_or_else(String::new, |(errors, after)| {
+            format!(" With {with}, the held-out error falls from {} to {} µm.", um(errors.0), um(after))
+        });
+    let others = others(law, subject.noun);
+    Some(format!("A law is proposed for it: {}{second}.{others}{worth}", formula(law)))
+}
+
+/// Where else the law may act, and what else it may look like, without numbers.
+fn others(law: &Law, noun: &str) -> String {
+    let is_here = |site: &Site| site.location == law.site.location && site.variable == law.site.variable;
+    let mut names: Vec<String> = Vec::new();
+    for rival in &law.rivals {
+        let name = match is_here(&rival.site) {
+            true => format!("of another form ({})", rival.form.name()),
+            false => at(&rival.site),
+        };
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let more = if names.len() > SAID { ", or others" } else { "" };
+    names.truncate(SAID);
+    match names.is_empty() {
+        true => String::new(),
+        false => format!(" These {noun} cannot distinguish it from one {}{more}.", names.join(" or ")),
+    }
+}
+
+/// The formula, what it changes and where, and its numbers.
+fn formula(law: &Law) -> String {
     let Expression { text, .. } = expression(&law.site, law.form, law.memory);
     let numbers: Vec<String> =
         law.constants().map(|own| format!("{} = {}", own.symbol, quantity(own))).collect();
+    format!(
+        "{text}, the {} as a function of the {}, {}, with {}",
+        law.site.result.name,
+        law.site.variable.name,
+        at(&law.site),
+        numbers.join(", ")
+    )
+}
+
+/// The law, its numbers and what it is worth; the second one stands beside the first.
+fn summary(law: &Law, number: usize, proposed: &Proposed) -> String {
     let first = proposed.law.as_ref().ok();
     let (start, with, worth) = match number {
         0 => ("A law is proposed for the unexplained error", "it", proposed.held_out),
@@ -182,14 +231,7 @@ fn summary(law: &Law, number: usize, proposed: &Proposed) -> String {
     let worth = worth.map_or_else(String::new, |(before, after)| {
         format!(" With {with}, the held-out error falls from {} to {} µm.", um(before), um(after))
     });
-    format!(
-        "{start}: {text}, the {} as a function of the {}, {}, with {}. It explains {} µm rms.{worth}",
-        law.site.result.name,
-        law.site.variable.name,
-        at(&law.site),
-        numbers.join(", "),
-        um(law.explains)
-    )
+    format!("{start}: {}. It explains {} µm rms.{worth}", formula(law), um(law.explains))
 }
 
 /// `saturation at 14 N`.

@@ -20,7 +20,7 @@ pub fn remark(law: &Law) -> Option<String> {
         });
     }
     let remark = match (law.form, law.memory, symbol) {
-        (_, Memory::Lag, _) => {
+        (_, Memory::Lag | Memory::Lagged, _) => {
             "A first-order lag behind the temperature is what a body does that warms through."
         }
         (Form::Approach | Form::Decay, _, "t" | "n") => {

@@ -22,7 +22,8 @@ pub fn remembered(memory: Option<LawMemory>, site: &Site, own: impl Fn(&str) -> 
 /// How a file says what a law remembers, but for the sign of the last move, which formulas have.
 pub fn in_file(memory: Memory) -> Option<LawMemory> {
     match memory {
-        Memory::None | Memory::Side => None,
+        // of what a file has no variable for
+        Memory::None | Memory::Side | Memory::Lagged => None,
         Memory::Stop => Some(LawMemory::Stop),
         Memory::BoucWen(_) => Some(LawMemory::BoucWen),
         Memory::Lag => Some(LawMemory::Lag),

@@ -30,6 +30,9 @@ pub fn remark(law: &Law) -> Option<String> {
         (_, Memory::Lag, _) => {
             "A first-order lag is what a spring with a dashpot beside it does (Kelvin and Voigt)."
         }
+        (_, Memory::Lagged, _) => {
+            "Behind the temperature by one time constant is what a body does that warms through."
+        }
         (_, Memory::BoucWen(_), _) => {
             "A loop of Bouc and Wen is what many small slips do together that begin one after the other."
         }
@@ -40,6 +43,9 @@ pub fn remark(law: &Law) -> Option<String> {
             "An exponential in time is what one relaxation time does (Maxwell)."
         }
         (Form::Logarithm, _, "t") => "A logarithm of time is what primary creep often follows.",
+        (Form::Decay | Form::Settling, Memory::Side, "F") | (Form::Settling, _, "v") => {
+            "Friction that falls to a level is what a lubricated or a worn slide does (Stribeck)."
+        }
         (Form::Harmonic, _, "y") => {
             "A wave over the reading is what an encoder or an interferometer adds when it interpolates."
         }

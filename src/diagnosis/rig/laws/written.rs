@@ -51,7 +51,8 @@ mod tests {
             };
             let symbols: &[&str] = match form {
                 Form::Threshold => &["k"],
-                Form::Harmonic => &["a", "b"],
+                Form::Harmonic | Form::Settling => &["a", "b"],
+                Form::PowerAfterGap => &["a", "g"],
                 Form::Polynomial(_) => &["c1", "c2", "c3"],
                 _ => &["a"],
             };

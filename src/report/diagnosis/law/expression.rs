@@ -16,6 +16,7 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         Memory::Stop => format!("({variable} − P_r[{variable}])"),
         Memory::BoucWen(_) => "z".to_owned(),
         Memory::Lag => format!("({variable} − {variable}_lag)"),
+        Memory::Lagged => format!("({variable}_lag − {variable}_start)"),
         _ => variable.to_owned(),
     };
     let x = &argument;
@@ -28,11 +29,15 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         if is_signed { (format!("sgn({x})·"), format!("|{x}|")) } else { (String::new(), x.clone()) };
     let text = match form {
         Form::Power => format!("a·{sign}({size}/{scale})^p"),
+        Form::PowerAfterGap if is_signed => format!("{sign}(a·({size}/{scale})^p + g)"),
+        Form::PowerAfterGap => format!("a·({size}/{scale})^p + g"),
         Form::Saturation => format!("a·{sign}min({size}/{corner}, 1)"),
         Form::Threshold => format!("k·max({x} − {corner}, 0)"),
         Form::Step => format!("a·[{x} > {corner}]"),
         Form::Approach => format!("a·{sign}(1 − exp(−{size}/{corner}))"),
         Form::Decay => format!("a·{sign}exp(−{size}/{corner})"),
+        Form::Settling if is_signed => format!("{sign}(a·exp(−{size}/{corner}) + b)"),
+        Form::Settling => format!("a·exp(−{size}/{corner}) + b"),
         Form::Logarithm => format!("a·{sign}ln(1 + {size}/{corner})"),
         Form::Harmonic => format!("a·(cos(2π·{x}/P) − 1) + b·sin(2π·{x}/P)"),
         Form::Polynomial(1) => format!("c1·{x}"),
@@ -50,6 +55,9 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         Memory::Stop => format!(r"\left({0} - \mathcal{{P}}_r[{0}]\right)", latex_of(variable)),
         Memory::BoucWen(_) => "z".to_owned(),
         Memory::Lag => format!(r"\left({0} - \tilde{{{0}}}_{{\tau}}\right)", latex_of(variable)),
+        Memory::Lagged => {
+            format!(r"\left(\tilde{{{0}}}_{{\tau}} - {0}_\mathrm{{start}}\right)", latex_of(variable))
+        }
         _ => latex_of(variable),
     };
     let corner = format!("{}_0", latex_of(variable));
@@ -61,11 +69,17 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
     };
     let latex = match form {
         Form::Power => format!(r"a{sign}\left(\frac{{{size}}}{{{scale}}}\right)^{{p}}"),
+        Form::PowerAfterGap => {
+            let power = format!(r"a\left(\frac{{{size}}}{{{scale}}}\right)^{{p}} + g");
+            if is_signed { format!(r"{sign}\left({power}\right)") } else { power }
+        }
         Form::Saturation => format!(r"a{sign}\,\min\left(\frac{{{size}}}{{{corner}}}, 1\right)"),
         Form::Threshold => format!(r"k\,\max({x} - {corner}, 0)"),
         Form::Step => format!(r"a\,[{x} > {corner}]"),
         Form::Approach => format!(r"a{sign}\left(1 - e^{{-{size}/{corner}}}\right)"),
         Form::Decay => format!(r"a{sign}\,e^{{-{size}/{corner}}}"),
+        Form::Settling if is_signed => format!(r"{sign}\left(a\,e^{{-{size}/{corner}}} + b\right)"),
+        Form::Settling => format!(r"a\,e^{{-{size}/{corner}}} + b"),
         Form::Logarithm => format!(r"a{sign}\,\ln\left(1 + \frac{{{size}}}{{{corner}}}\right)"),
         Form::Harmonic => {
             format!(r"a\left(\cos\frac{{2\pi {x}}}{{P}} - 1\right) + b\sin\frac{{2\pi {x}}}{{P}}")
@@ -86,7 +100,9 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
                 latex_of(variable)
             ),
         ),
-        Memory::None | Memory::Side | Memory::Stop | Memory::Lag => (String::new(), String::new()),
+        Memory::None | Memory::Side | Memory::Stop | Memory::Lag | Memory::Lagged => {
+            (String::new(), String::new())
+        }
     };
     Expression {
         text: format!("{result} = {}{where_text}", bracketed(side.0, text)),

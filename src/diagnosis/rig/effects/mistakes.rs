@@ -39,7 +39,7 @@ pub static SIGN_MISTAKE: Effect = Effect {
 /// Two columns, axes or lengths exchanged.
 pub static SWAP_MISTAKE: Effect = Effect {
     name: "swap_mistake",
-    summary: "two columns, two axes of the loads or two lengths of the rod are exchanged",
+    summary: "two columns, two axes of the loads, or two lengths, sides or pipes of the rod are exchanged",
     formula: "names exchanged",
     cause: "two names exchanged",
     cause_at: |location| at("two names exchanged", location),

@@ -10,7 +10,8 @@
 //!                       the clamp, along that line, scanned; first and second order in the whole
 //!                       orientation of {T} to the clamp, a vector in the clamp's frame
 //! of a joint's reversal it turns by Σ a_k·cos(π k x) one way, by as much the other way when it
-//!                       came from there, or is loaded the other way
+//!                       came from there, or is loaded the other way; or by as much as it is
+//!                       loaded, k > 0: a drive that gives way more at some angles than at others
 //! of two joints         both turn by Σ a_kl·cos(π k x)·cos(π l y): what neither does as a function
 //!                       of its own angle; or any other joint does
 //! of a link             all beyond a joint turns about any axis of its link by products of two
@@ -89,6 +90,9 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
         let loaded = |row: usize| context.configurations[row].torque[j].signum();
         if is_known {
             entries.extend(reversal(context, j, Way::Load, &loaded));
+            let most = context.largest(|there| there.torque[j]);
+            let share = |row: usize| context.configurations[row].torque[j] / most;
+            entries.extend(reversal(context, j, Way::Torque, &share));
             entries.extend(loose::windows(context, j, "the sign of its torque", &loaded));
         }
     }
@@ -242,23 +246,32 @@ fn by_whole_orientation(context: &Context) -> Entry {
 enum Way {
     Approach,
     Load,
+    /// The more the larger its load; what is the same at all angles is its compliance.
+    Torque,
 }
 
 /// What a joint does one way and not the other, by its angle: `sign` is 1 or −1, 0 where nobody
-/// knows.
+/// knows, or how far it is loaded.
 fn reversal(context: &Context, j: usize, way: Way, sign: &dyn Fn(usize) -> f64) -> Option<Entry> {
     let x = angles(context, j)?;
-    let parameters = (0..=MOST_OF_REVERSAL).map(|k| {
+    let first = match way {
+        Way::Approach | Way::Load => 0,
+        Way::Torque => 1,
+    };
+    let parameters = (first..=MOST_OF_REVERSAL).map(|k| {
         let column = context.turn(j, |row, _| sign(row) * cosine(k, x[row]));
         let name = format!("reversed_cosine_{k}_urad");
         (linear(name, TURN / (1 + k) as f64), column)
     });
     let joint = format!("joint {}", j + 1);
-    let (form, either) = match way {
-        Way::Approach => ("a curve for each direction of approach", "each direction of approach"),
-        Way::Load => ("a curve for each sign of the torque", "each sign of its torque"),
+    let (form, how) = match way {
+        Way::Approach => {
+            ("a curve for each direction of approach", "another curve for each direction of approach")
+        }
+        Way::Load => ("a curve for each sign of the torque", "another curve for each sign of its torque"),
+        Way::Torque => ("a curve times its torque", "the more the larger its torque"),
     };
-    let follows = format!("follows the angle of {joint}, another curve for {either}");
+    let follows = format!("follows the angle of {joint}, {how}");
     let label = format!("{joint}, {form}");
     Some(curve(label, follows, Some(angle_of(j)), parameters.collect()))
 }

@@ -8,6 +8,9 @@
 //! tails     Σ ln t_ν(z; s) of all                                                    ν of a list, s by maximum likelihood
 //! ```
 //!
+//! z in the device's own axes, for it is a sensor that reads one coordinate; or with one tail for
+//! the three of a row, which are off together where a pose was disturbed.
+//!
 //! (K. L. Lange, R. J. A. Little, J. M. G. Taylor, *JASA* 84 (1989) 881–896.) With tails each row
 //! counts by w ~ (ν + 3)/(ν + |z|²/s²), near the middle all alike, so that what is far out is
 //! neither misread nor two opposite moves; the scatter of all stays what it is.
@@ -18,10 +21,12 @@ use super::super::effects::events::{MISREAD, OUTLIER};
 use super::prepared::Prepared;
 use crate::inference::{Hypothesis, Term};
 use crate::statistics::ln_gamma;
-use nalgebra::DVector;
+use nalgebra::{DVector, Vector3};
 
 /// Degrees of freedom that are tried.
 const TAILS: [f64; 7] = [2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 20.0];
+/// Numbers of a row that are off together: one by itself, or all three.
+const TOGETHER: [usize; 2] = [1, 3];
 /// Iterations of a scale.
 const ROUNDS: usize = 30;
 
@@ -38,7 +43,11 @@ pub fn weights(prepared: &Prepared, hypothesis: &Hypothesis, left: &DVector<f64>
     let count = 3 * model.campaign.measurements.len();
     let whole = left + model.terms.response(&misread);
     let noise = hypothesis.sigma;
-    let all: Vec<f64> = whole.iter().take(count).map(|z| z / noise).collect();
+    let recording = &model.campaign.measurements;
+    let in_device = |(row, z): (usize, &[f64])| -> [f64; 3] {
+        (recording.device(row).rotation.tr_mul(&Vector3::from_column_slice(z)) / noise).into()
+    };
+    let all: Vec<f64> = whole.as_slice()[..count].chunks(3).enumerate().flat_map(in_device).collect();
     let tails = Tails::of(&all);
     let weight = |z: &[f64]| {
         let square = z.iter().map(|z| z * z).sum::<f64>() / tails.square;
@@ -79,7 +88,8 @@ struct Tails {
 
 impl Tails {
     fn of(all: &[f64]) -> Tails {
-        let tried = TAILS.into_iter().map(|freedom| Tails::with(all, freedom));
+        let forms = TOGETHER.into_iter().flat_map(|together| TAILS.map(|freedom| (together, freedom)));
+        let tried = forms.map(|(together, freedom)| Tails::with(all, together, freedom));
         let likelier = |a: Tails, b: Tails| if b.ln_likelihood > a.ln_likelihood { b } else { a };
         tried.reduce(likelier).unwrap_or(Tails {
             freedom: 1.0,
@@ -88,17 +98,20 @@ impl Tails {
         })
     }
 
-    fn with(all: &[f64], freedom: f64) -> Tails {
-        let n = all.len().max(1) as f64;
-        let mut square = all.iter().map(|z| z * z).sum::<f64>() / n;
+    /// Of data of which so many neighbours are off together.
+    fn with(all: &[f64], together: usize, freedom: f64) -> Tails {
+        let (n, d) = (all.len().max(1) as f64, together as f64);
+        let squares: Vec<f64> = all.chunks(together).map(|z| z.iter().map(|z| z * z).sum()).collect();
+        let mut square = squares.iter().sum::<f64>() / n;
         for _ in 0..ROUNDS {
-            let weighted = |z: &f64| (freedom + 1.0) / (freedom + z * z / square) * z * z;
-            square = (all.iter().map(weighted).sum::<f64>() / n).max(f64::MIN_POSITIVE);
+            let weighted = |z: &f64| (freedom + d) / (freedom + z / square) * z;
+            square = (squares.iter().map(weighted).sum::<f64>() / n).max(f64::MIN_POSITIVE);
         }
         let constant =
-            ln_gamma(0.5 * (freedom + 1.0)) - ln_gamma(0.5 * freedom) - 0.5 * (freedom * PI * square).ln();
-        let tail = |z: &f64| -0.5 * (freedom + 1.0) * (z * z / square / freedom).ln_1p();
-        let ln_likelihood = n * constant + all.iter().map(tail).sum::<f64>() - (TAILS.len() as f64).ln();
+            ln_gamma(0.5 * (freedom + d)) - ln_gamma(0.5 * freedom) - 0.5 * d * (freedom * PI * square).ln();
+        let tail = |z: &f64| -0.5 * (freedom + d) * (z / square / freedom).ln_1p();
+        let choices = (TAILS.len() * TOGETHER.len()) as f64;
+        let ln_likelihood = n / d * constant + squares.iter().map(tail).sum::<f64>() - choices.ln();
         Tails { freedom, square, ln_likelihood }
     }
 }
@@ -131,6 +144,17 @@ mod tests {
         assert!(tails_over_misread(&far, 2, 11.0) < -10.0, "{}", tails_over_misread(&far, 2, 11.0));
         normal.extend([12.0, -9.0, 7.0]);
         heavy.extend([5.0, 0.3, -1.0]);
+        // one coordinate that is far out among others of the same tails, and a row
+        let mut random = Random::seeded(5, 0);
+        let mut scale = || {
+            let squares: f64 = (0..4).map(|_| random.normal().powi(2)).sum();
+            (2.0 / squares).sqrt()
+        };
+        let rows: Vec<f64> = (0..99).map(|_| scale()).collect();
+        let mut rows: Vec<f64> =
+            rows.into_iter().flat_map(|scale| [0; 3].map(|_| scale * random.normal())).collect();
+        rows.extend([5.0, -5.0, 4.0]);
+        assert!(tails_over_misread(&rows, 1, 25.0) > 5.0, "{}", tails_over_misread(&rows, 1, 25.0));
         assert!(tails_over_misread(&normal, 1, 25.0) < -10.0, "{}", tails_over_misread(&normal, 1, 25.0));
         assert!(tails_over_misread(&heavy, 1, 25.0) > 5.0, "{}", tails_over_misread(&heavy, 1, 25.0));
     }

@@ -13,9 +13,11 @@ use super::{
     CalibrationEffect, Context, Entry, Transfer, first, lack, law, no_event, out_of_the_points,
     own_parameters, single, size,
 };
+use crate::calibration::SOFTEST;
 use crate::inference::{
     Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Part, Reported, WrittenTo,
 };
+use crate::robot::Motion;
 use crate::units::DEG;
 
 /// Share by which a rod is softer than its model.
@@ -260,13 +262,17 @@ fn payload_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry>
 }
 
 /// A robot that does not stand level.
+///
+/// A level robot's weight puts no torque on a joint about a vertical axis, so that nobody knows how
+/// its drive gives way; on one that is not level it does: J·(c·φ)·z·(S × g) with an unknown c.
 pub static GRAVITY_DIRECTION: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "gravity_direction",
         kind: Kind::Physics,
         summary: "the robot does not stand level: gravity acts along another direction",
         formula: "R·C^g·Rᵀ·δg + Σ_j Jⱼ·cⱼ·zⱼ·(Sⱼ × δg): δg = φ × g, φ about x and y of {0}; Sⱼ the first \
-                  moment of all that hangs beyond joint j",
+                  moment of all that hangs beyond joint j; of a joint about a vertical axis, which no \
+                  level robot loads, c is not known",
         prior: "0.5°: a foot that was set up without a level",
         parameters: &[
             (&["roll_deg"], "rotation of gravity about x of the base"),
@@ -281,7 +287,7 @@ pub static GRAVITY_DIRECTION: CalibrationEffect = CalibrationEffect {
         direct_check: Some("Put a level on the robot's foot."),
     },
     candidates: levels,
-    estimates: own_parameters,
+    estimates: level,
     observed: |finding, _| {
         let angle = size(finding, DEG).with_unit("°");
         format!("Gravity is inclined by {angle} to where the base says it acts")
@@ -291,6 +297,21 @@ pub static GRAVITY_DIRECTION: CalibrationEffect = CalibrationEffect {
     event: no_event,
 };
 
+/// Roll and pitch; what an upright joint adds is no angle.
+fn level(model: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
+    let mut estimates = own_parameters(model, parts);
+    estimates.truncate(2);
+    estimates
+}
+
+/// True for a joint about whose axis the masses of the file have no torque worth mentioning.
+fn is_upright(context: &Context, joint: usize) -> bool {
+    let moment = |there: &Configuration| there.first_moment[joint].cross(&there.gravity);
+    let about = context.largest(|there| there.axis[joint].dot(&moment(there)));
+    let whole = context.largest(|there| there.first_moment[joint].norm() * there.gravity.norm());
+    context.motions[joint] == Motion::Revolute && whole > 0.0 && about < LEVEL * whole
+}
+
 fn levels(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let pulls = |there: &Configuration| there.first_moment.iter().any(|moment| moment.amax() > 0.0);
     let has_arm = joints_give_way(context) && context.configurations.iter().any(pulls);
@@ -299,13 +320,25 @@ fn levels(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
         lacks.push(lack(&GRAVITY_DIRECTION, reason));
         return Vec::new();
     }
+    let turned = |there: &Configuration, axis: usize| there.base.rotation.column(axis).cross(&there.gravity);
+    let of_axes = || ["roll_deg", "pitch_deg"].into_iter().enumerate();
     let about = |(axis, name): (usize, &str)| {
         let column = context.column(|_, there| {
-            let turned = there.base.rotation.column(axis).cross(&there.gravity);
+            let turned = turned(there, axis);
             there.in_world(&context.weight_compliance) * turned + there.joint_deflection_by_weight(&turned)
         });
         (linear(name, LEVEL), column)
     };
-    let parameters = ["roll_deg", "pitch_deg"].into_iter().enumerate().map(about).collect();
+    let mut parameters: Vec<_> = of_axes().map(about).collect();
+    for joint in (0..context.joint_count()).filter(|joint| has_arm && is_upright(context, *joint)) {
+        let gives_way = |(axis, name): (usize, &str)| {
+            let column = context.turn(joint, |_, there| {
+                there.axis[joint].dot(&there.first_moment[joint].cross(&turned(there, axis)))
+            });
+            let usual = context.softest[joint] / SOFTEST;
+            (linear(format!("joint_{}_{name}_urad_per_nm", joint + 1), LEVEL * usual), column)
+        };
+        parameters.extend(of_axes().map(gives_way));
+    }
     vec![Entry::new(&GRAVITY_DIRECTION.effect, Location::Part(Part::Base), parameters)]
 }

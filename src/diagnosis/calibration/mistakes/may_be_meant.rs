@@ -9,7 +9,7 @@ use super::super::diagnose::CalibrationDiagnosis;
 use super::super::diagnose::prepared::Prepared;
 use super::super::effects::contact::CONTACT_FORCE_VARIATION;
 use super::super::effects::mistakes::{ROD_MISTAKE, UNIT_MISTAKE};
-use super::super::model::law::{Hung, Law};
+use super::super::model::law::Law;
 use super::search::ALIKE;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Mode, Options, calibrate};
@@ -32,8 +32,9 @@ pub fn add_rivals(
     found: &mut CalibrationDiagnosis,
 ) {
     let model = &found.model;
+    // a mass at its tip or at the flange may be that of the rod as well
     let is_of_rod = |finding: &Finding| {
-        let is_rod = |law: &Law| matches!(law, Law::Rod(_) | Law::Hung(Hung::Rod));
+        let is_rod = |law: &Law| matches!(law, Law::Rod(_) | Law::Hung(_));
         *finding.effect == CONTACT_FORCE_VARIATION.effect
             || finding.parts.iter().any(|part| is_rod(model.law(part.term.candidate)))
     };

@@ -87,6 +87,7 @@ pub(super) fn all(
     list.joints();
     list.positions();
     list.rows();
+    list.displaced_columns();
     list.clamps();
     list.base();
     list.tool();

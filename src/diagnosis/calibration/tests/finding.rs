@@ -221,9 +221,10 @@ fn a_force_in_kilograms_and_a_rod_of_the_folder_are_rivals_of_what_is_named_for_
     let file = |text: &str| crate::rod::Rod::from_toml("rod", text).unwrap();
     let softer = ROD.replace("youngs_modulus_gpa = 193.0", "youngs_modulus_gpa = 25.0");
     assert_ne!(softer, ROD);
-    let others = Neighbours { rods: vec![("right.toml".into(), file(&softer))], ..Neighbours::default() };
-    let said = |campaign: &Campaign| -> Vec<String> {
-        let mended = mend(campaign, Mode::Fea, &others, &Options::default()).unwrap();
+    let folder =
+        |text: &str| Neighbours { rods: vec![("right.toml".into(), file(text))], ..Neighbours::default() };
+    let said_beside = |campaign: &Campaign, others: &Neighbours| -> Vec<String> {
+        let mended = mend(campaign, Mode::Fea, others, &Options::default()).unwrap();
         let findings = mended.diagnose().unwrap().diagnosis.findings;
         let of_one = |own: Finding| {
             let rivals = own.rivals.iter().map(|rival| format!("{} {}", rival.effect, rival.location));
@@ -231,6 +232,7 @@ fn a_force_in_kilograms_and_a_rod_of_the_folder_are_rivals_of_what_is_named_for_
         };
         findings.into_iter().flat_map(of_one).collect()
     };
+    let said = |campaign: &Campaign| said_beside(campaign, &folder(&softer));
     let plan = || Plan { poses_per_clamp: 25, seed: 4, ..Plan::default() };
     let mut campaign = with_rods(ROD, ROD, plan());
     assert_eq!(said(&campaign), [""; 0]);
@@ -242,6 +244,11 @@ fn a_force_in_kilograms_and_a_rod_of_the_folder_are_rivals_of_what_is_named_for_
     assert!(!said(&campaign).iter().any(|own| own.starts_with("unit_mistake")));
     let of_rod = said(&with_rods(&softer, ROD, plan()));
     assert!(of_rod.contains(&"rod_mistake right.toml".into()), "{of_rod:?}");
+    // the ball of another rod
+    let heavier = ROD.replace("mass_g = 60", "mass_g = 180");
+    assert_ne!(heavier, ROD);
+    let of_ball = said_beside(&with_rods(&heavier, ROD, plan()), &folder(&heavier));
+    assert_eq!(of_ball, ["rod_mistake right.toml", "tip_mass tip"]);
 }
 
 /// A campaign that was recorded with the rod `actual` and has the file of [`ROD`].
@@ -354,4 +361,24 @@ fn no_mass_is_negative_and_no_drive_turns_against_its_load() {
         let masses = finding.estimates.iter().filter(|estimate| estimate.name.starts_with("mass_"));
         assert!(masses.clone().all(|mass| mass.value >= -modelled && mass.low >= -modelled), "{finding:?}");
     }
+}
+
+/// What held-out poses lose most without, first.
+#[test]
+fn the_stronger_of_two_effects_is_said_first() {
+    let campaign = clamps(24);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let both = |gear: f64, coupling: f64| {
+        let by = |row: usize| {
+            let there = &context.configurations[row];
+            let (wave, turned) = ((11.3 * there.joints[1]).sin(), there.joints[4]);
+            there.tip_jacobian[1] * (gear * wave) + there.tip_jacobian[5] * (coupling * turned)
+        };
+        let found = recorded(&campaign, &by, 15.0 * UM, 2);
+        let found = diagnose_as_recorded(&found, Mode::Fea, &Options::default()).unwrap().diagnosis;
+        found.findings.iter().map(|finding| finding.effect.name).collect::<Vec<_>>()
+    };
+    assert_eq!(both(400e-6, 2e-4), ["transmission_error", "wrist_coupling"]);
+    assert_eq!(both(60e-6, 1.5e-3), ["wrist_coupling", "transmission_error"]);
 }

@@ -27,6 +27,10 @@ fn links_turn_and_joints_err_together() {
         let step = |row: usize| recording.joints(row)[2] - recording.joints(row - 1)[2];
         if row == 0 { 0.0 } else { step(row).signum() }
     };
+    let compensation = Compensation::new(&campaign, Mode::Fea).unwrap();
+    let torque =
+        |at: usize| super::changed::row(&campaign, &calibration, &compensation, at).torque()[2].abs();
+    let most = (0..recording.len()).map(torque).fold(0.0, f64::max);
     let link = "link 3, turned by joint 2 and joint 3";
     let cases: Vec<Case> = vec![
         // the link's frame is where its table ends: α turns about its x axis, β about its y axis,
@@ -78,6 +82,12 @@ fn links_turn_and_joints_err_together() {
             "joint 3, a curve for each sign of the torque",
             "reversed_cosine_2_urad",
             Box::new(|r, row, v| r.q[2] += v * r.torque()[2].signum() * (TAU * y[row]).cos()),
+        ),
+        (
+            "unknown",
+            "joint 3, a curve times its torque",
+            "reversed_cosine_2_urad",
+            Box::new(|r, row, v| r.q[2] += v * r.torque()[2] / most * (TAU * y[row]).cos()),
         ),
         (
             "unknown",
@@ -229,6 +239,28 @@ fn a_loose_tool_is_no_mass() {
     assert!(names.is_empty(), "{names:?}");
     let left = found.diagnosis.discrepancy.and_then(|left| left.location).map(|at| at.to_string());
     assert_eq!(left.as_deref(), Some("orientation, loose along x of the tool"));
+}
+
+/// A drive that gives way more at some angles than at others: most of it is a wave of its gear.
+#[test]
+fn a_compliance_that_follows_the_angle_is_no_error_of_the_gear() {
+    let campaign = clamps(30);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let (q, torque) = (
+        |row: usize| context.configurations[row].joints[1],
+        |row: usize| context.configurations[row].torque[1],
+    );
+    let by = |row: usize| {
+        context.configurations[row].tip_jacobian[1] * (1e-6 * torque(row) * (2.0 * q(row) + 0.4).sin())
+    };
+    for seed in 0..2 {
+        let recorded = recorded(&campaign, &by, 15.0 * UM, seed);
+        let found = diagnose_as_recorded(&recorded, Mode::Fea, &Options::default()).unwrap();
+        let names: Vec<&str> = found.diagnosis.findings.iter().map(|f| f.effect.name).collect();
+        let left = found.diagnosis.discrepancy.and_then(|left| left.location).map(|at| at.to_string());
+        assert_eq!((names, left.as_deref()), (vec![], Some("joint 2, a curve times its torque")));
+    }
 }
 
 /// Joints that keep a share of the move before the last one: that runs against the last move on

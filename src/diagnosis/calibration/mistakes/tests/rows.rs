@@ -35,3 +35,26 @@ fn positions_in_reverse_order() {
     wrong.measurements.rows.iter_mut().zip(groups.iter().rev()).for_each(|(row, group)| row.group = *group);
     assert_eq!(found(&wrong), one("row_mistake", "clamp, x_mm, y_mm, z_mm"));
 }
+
+/// A column that was pasted one row too low, or too high.
+#[test]
+fn a_whole_column_in_other_rows_than_the_others() {
+    let right = tracked(60, 7);
+    for by in [1, -1] {
+        let there = |row: isize| (row + by).rem_euclid(60) as usize;
+        let mut angles = right.clone();
+        let mut places = right.clone();
+        for row in 0..60 {
+            let of_joint = right.measurements.joints(there(row as isize))[3];
+            angles.measurements.joint_values[6 * row + 3] = of_joint;
+            points(&mut places)[row].y = points(&mut right.clone())[there(row as isize)].y;
+        }
+        for (wrong, place) in [(angles, "q4_deg"), (places, "y_mm")] {
+            let mended = mended(&wrong);
+            assert_eq!(found(&wrong), one("row_mistake", place));
+            assert_eq!(mended.found[0].estimates[0].value, -by as f64);
+            // the row whose number is lost is left out
+            assert_eq!(mended.campaign.measurements.len(), 59);
+        }
+    }
+}

@@ -17,7 +17,7 @@
 
 use std::collections::BTreeMap;
 
-use super::datum::Datum;
+use super::datum::{Datum, Imposed};
 use super::resolution::resolution;
 use crate::diagnosis::rig::numbering::numbered;
 use crate::rig::readings::{Axis, RigHeader};
@@ -48,9 +48,14 @@ pub fn spread(data: &[Datum], header: &RigHeader) -> Vec<f64> {
     if let Some(spread) = stated(data, header) {
         return spread;
     }
-    // there is one load cell, and one that is read at each of some stations is one sensor
-    let sensor = numbered(data.iter().map(|d| d.imposed.is_none().then(|| d.sensor())));
-    let channel = numbered(data.iter().map(|d| d.imposed.is_none().then_some(d.channel)));
+    // there is one load cell, and one that is read at each of some stations is one sensor; but along
+    // an axis on which the rod is far stiffer it is the displacement that scatters, as much as the
+    // others do at least
+    let stiffer = stiffer(data).map(|stiffer| if stiffer > ALIKE { stiffer } else { 1.0 });
+    let stiff = |d: &Datum| if d.imposed.is_some() { stiffer[d.direction.axis.index()] } else { 1.0 };
+    let cell = |d: &Datum| (stiff(d) > 1.0).then_some(d.direction.axis);
+    let sensor = numbered(data.iter().map(|d| (d.imposed.is_none().then(|| d.sensor()), cell(d))));
+    let channel = numbered(data.iter().map(|d| (d.imposed.is_none().then_some(d.channel), cell(d))));
     let of_number = |numbers: &[usize], number: usize| {
         scatter(
             &data.iter().zip(numbers).filter(|(_, own)| **own == number).map(|(d, _)| d).collect::<Vec<_>>(),
@@ -62,18 +67,34 @@ pub fn spread(data: &[Datum], header: &RigHeader) -> Vec<f64> {
         of_number(&sensor, k).or_else(|| of_number(&channel, channel[first]))
     };
     let scatters: Vec<Option<Scatter>> = (0..count).map(of_sensor).collect();
-    let Some(usual) = usual(&scatters, &sensor) else { return vec![1.0; data.len()] };
-    let beside = |number: &usize| scatters[*number].as_ref().map_or(1.0, |scatter| scatter.beside(&usual));
-    sensor.iter().map(beside).collect()
+    let Some(usual) = usual(&scatters, &sensor) else { return data.iter().map(stiff).collect() };
+    let beside = |number: usize| scatters[number].as_ref().map_or(1.0, |scatter| scatter.beside(&usual));
+    data.iter().zip(&sensor).map(|(d, &number)| beside(number).max(stiff(d))).collect()
 }
 
-/// What the header says of both, where both were read: √((c·s_F)² + s²)/s of a load, c what a
-/// newton counts.
+/// By axis how much more a measured load, as it counts, is than the displacement that was imposed:
+/// c/C, C the compliance along it; 1 where none was.
+fn stiffer(data: &[Datum]) -> [f64; 3] {
+    let largest = |axis: Axis, value: fn(&Datum) -> f64| {
+        let own = data.iter().filter(|d| d.imposed.is_some() && d.direction.axis == axis);
+        own.fold(0.0, |most: f64, datum| most.max(value(datum).abs()))
+    };
+    Axis::ALL.map(|axis| {
+        let imposed = largest(axis, Datum::drive);
+        if imposed > 0.0 { largest(axis, |datum| datum.measured) / imposed } else { 1.0 }
+    })
+}
+
+/// What the header says of both, where both were read: √((c·s_F)² + (c/C·s)²)/s of a load, c what a
+/// newton counts, C the compliance along its axis.
 fn stated(data: &[Datum], header: &RigHeader) -> Option<Vec<f64>> {
     let (noise, load_noise) = (header.noise.filter(|noise| *noise > 0.0)?, header.load_noise?);
     data.iter().any(|datum| datum.imposed.is_none()).then_some(())?;
+    let stiffer = stiffer(data);
     let of_datum = |datum: &Datum| {
-        datum.imposed.map_or(1.0, |imposed| (imposed.per_newton * load_noise).hypot(noise) / noise)
+        let of_displacement = stiffer[datum.direction.axis.index()] * noise;
+        let of_load = |imposed: Imposed| (imposed.per_newton * load_noise).hypot(of_displacement) / noise;
+        datum.imposed.map_or(1.0, of_load)
     };
     Some(data.iter().map(of_datum).collect())
 }
@@ -286,6 +307,37 @@ mod tests {
         // a rod that rattles along z is no sensor that does
         let rattles = |read: &Read| if read.channel == 2 && read.axis == 2 { 9.0 } else { 1.0 };
         assert_eq!(spread_of(rattles, |_| 0.0), [1.0; 3]);
+    }
+
+    /// Along an axis on which the rod is twenty times stiffer 0.5 µm of the displacement are as much
+    /// as 10 µm along the other.
+    #[test]
+    fn loads_along_a_stiff_axis_scatter_by_the_displacement() {
+        let mut random = Random::seeded(7, 0);
+        let mut rows = String::new();
+        for axis in [0, 2] {
+            for k in [1, 2, 3, 4, 5, 4, 3, 2, 1].repeat(5) {
+                let c = if axis == 0 { 2.5 } else { 50.0 };
+                let (load, u) = (2.0 * f64::from(k) + 0.004 * random.normal(), 2.0 * c * f64::from(k));
+                let read = |channel: usize, u: f64| if channel == axis { u } else { 0.0 };
+                let [x, y, z] = [0, 1, 2].map(|channel| read(channel, u) + 0.5 * random.normal());
+                rows += &format!("{},{load:.3},{x:.2},{y:.2},{z:.2}\n", Axis::ALL[axis]);
+            }
+        }
+        let of_axis = |noise: &str| {
+            let head = "axis,load_n,dx_um,dy_um,dz_um";
+            let text = format!("# driven = displacement\n{noise}{head}\n{rows}");
+            let readings = Readings::from_text("f", &text).unwrap();
+            let data = datum::recorded(&readings);
+            let spread = spread(&data, &readings.header);
+            [Axis::X, Axis::Z].map(|axis| {
+                spread[data.iter().position(|d| d.imposed.is_some() && d.direction.axis == axis).unwrap()]
+            })
+        };
+        let [stiff, soft] = of_axis("");
+        assert!((18.0..28.0).contains(&stiff) && soft == 1.0, "{stiff} {soft}");
+        let [stiff, soft] = of_axis("# noise_um = 0.5\n# noise_n = 0.004\n");
+        assert!((18.0..23.0).contains(&stiff) && (1.0..1.2).contains(&soft), "{stiff} {soft}");
     }
 
     #[test]

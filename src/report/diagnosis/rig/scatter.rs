@@ -11,10 +11,14 @@ use crate::units::{MM, UM, significant};
 pub fn uneven(found: &RigDiagnosis) -> Option<Uneven> {
     let evidence = &found.evidence;
     let noise = found.diagnosis.noise;
+    let data = || found.model.data().iter().zip(&evidence.spread);
+    let mut of_loads = data().filter(|(datum, _)| datum.imposed.is_some()).map(|(_, spread)| *spread);
+    let first = of_loads.next();
+    let is_one = of_loads.all(|spread| Some(spread) == first);
     let mut seen = Vec::new();
     let (mut words, mut sensors) = (Vec::new(), Vec::new());
-    for (datum, &spread) in found.model.data().iter().zip(&evidence.spread) {
-        let sensor = name(datum);
+    for (datum, &spread) in data() {
+        let sensor = name(datum, is_one);
         if spread == 1.0 || seen.contains(&sensor) {
             continue;
         }
@@ -40,12 +44,13 @@ pub fn uneven(found: &RigDiagnosis) -> Option<Uneven> {
     })
 }
 
-/// `dz`, `dz at 300.0 mm`, `the measured loads`.
-fn name(datum: &Datum) -> String {
+/// `dz`, `dz at 300.0 mm`, `the measured loads`; by axis where these are not one sensor.
+fn name(datum: &Datum, are_loads_one: bool) -> String {
     let at = datum.read_station.map_or_else(String::new, |s| format!(" at {:.1} mm", s / MM));
     match datum.imposed {
         None => format!("d{}{at}", datum.channel),
-        Some(_) => "the measured loads".to_owned(),
+        Some(_) if are_loads_one => "the measured loads".to_owned(),
+        Some(_) => format!("the measured loads along {}", datum.direction.axis),
     }
 }
 

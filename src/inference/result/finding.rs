@@ -65,6 +65,9 @@ pub struct FindingPart {
     pub explains: f64,
     /// What explains it as well, likeliest first.
     pub rivals: Vec<Rival>,
+    /// True where without it the numbers of the file would have to be much farther off than their
+    /// uncertainties allow: then held-out data are predicted as well by these.
+    pub takes_numbers_place: bool,
 }
 
 /// A number with its 95 % interval, SI.

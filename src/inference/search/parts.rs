@@ -116,6 +116,7 @@ pub fn part(
         p_value: chi_squared_survival(gained.max(0.0), determined).unwrap_or(1.0),
         explains: explained(search, &rest, hypothesis),
         rivals,
+        takes_numbers_place: search.takes_numbers_place(hypothesis, position),
     }
 }
 

@@ -108,7 +108,7 @@ fn are_minor(subject: &Subject) -> bool {
     let is_hardly_better =
         subject.errors.held_out.is_some_and(|(before, after)| after > (1.0 - MINOR) * before);
     let is_named = findings.iter().any(|finding| finding.kind() == Kind::Mistake);
-    !is_named && (is_hardly_better || findings.iter().all(is_lost))
+    !is_named && !take_numbers_place(findings) && (is_hardly_better || findings.iter().all(is_lost))
 }
 
 /// How the data scatter: noise only where somebody stated it; what repeats show; else of unknown
@@ -253,6 +253,12 @@ fn worth(subject: &Subject) -> String {
             from_to(before, after),
             only_in_part(subject, it, (before, after))
         ),
+        Some(_) if mistakes.is_empty() && take_numbers_place(&subject.diagnosis.findings) => format!(
+            " Without {it} numbers of the file would have to be much farther off than their uncertainties allow; \
+             then they would predict held-out {} as well. {}",
+            subject.noun,
+            capital(&scatter)
+        ),
         // said before all else
         Some(_) if mistakes.is_empty() => format!(" {}", capital(&scatter)),
         Some((before, after)) => format!(
@@ -265,13 +271,24 @@ fn worth(subject: &Subject) -> String {
     }
 }
 
+/// True where without any of them the numbers of the file would be as far off as they cannot be.
+/// Held-out data are then predicted as well by these, and say nothing.
+fn take_numbers_place(findings: &[Finding]) -> bool {
+    let mut physics = findings.iter().filter(|finding| finding.kind() == Kind::Physics).peekable();
+    physics.peek().is_some()
+        && physics.all(|finding| finding.parts.iter().any(|part| part.takes_numbers_place))
+}
+
 /// Said where held-out data are predicted no better with what was found. A single event says
 /// nothing of them, and a mistake is corrected before anything is held out.
 fn unconfirmed(subject: &Subject) -> Option<String> {
     let findings = &subject.diagnosis.findings;
     let is_physics = |finding: &&Finding| finding.kind() == Kind::Physics;
     let count = findings.iter().filter(is_physics).count();
-    if count == 0 || findings.iter().any(|finding| finding.kind() == Kind::Mistake) {
+    if count == 0
+        || take_numbers_place(findings)
+        || findings.iter().any(|finding| finding.kind() == Kind::Mistake)
+    {
         return None;
     }
     let (before, after) = subject.errors.held_out?;

@@ -31,6 +31,7 @@ fn as_if(model: &CalibrationModel, candidate: usize) -> Finding {
         p_value: 0.0,
         explains: 0.0,
         rivals: Vec::new(),
+        takes_numbers_place: false,
     };
     let hypothesis = Hypothesis {
         terms: vec![term],

@@ -57,6 +57,7 @@ fn finding(model: &RigModel, index: usize) -> Finding {
         p_value: 0.0,
         explains: 0.0,
         rivals: Vec::new(),
+        takes_numbers_place: false,
     };
     Finding::from_part(candidate.effect, location, estimates, part)
 }

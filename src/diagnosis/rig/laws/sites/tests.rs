@@ -78,8 +78,8 @@ const POINTS: [(&str, &str, &str, Form, bool); 17] = [
 
 /// What the others say that no function of one variable at one place does: how a load or a
 /// displacement is shared among axes, or the compliance along the rod.
-const NO_POINTS: [&str; 4] =
-    ["load_misalignment", "sensor_misalignment", "shear_modulus", "bend_flexibility"];
+const NO_POINTS: [&str; 5] =
+    ["load_misalignment", "sensor_misalignment", "shear_modulus", "bend_flexibility", "pipe_stiffness"];
 
 /// Existing effects are points of the grammar: what they do to the data is what a law does. Those
 /// that are none are listed, and are none.

@@ -197,6 +197,13 @@ mod tests {
             let said = headline(&doubtful);
             assert!(said.starts_with("Possible, but held-out poses do not confirm this ("), "{said}");
             assert!(said.contains("): The base drifts") && !said.contains("falls"), "{said}");
+            // numbers as far off as they cannot be would predict them as well
+            for finding in &mut doubtful.diagnosis.findings {
+                finding.parts.iter_mut().for_each(|part| part.takes_numbers_place = true);
+            }
+            let said = headline(&doubtful);
+            assert!(said.starts_with("The base drifts"), "{said}");
+            assert!(said.contains("Without it numbers of the file would have to be much farther off"), "{said}");
         });
     }
 

@@ -203,7 +203,10 @@ mod tests {
             }
             let said = headline(&doubtful);
             assert!(said.starts_with("The base drifts"), "{said}");
-            assert!(said.contains("Without it numbers of the file would have to be much farther off"), "{said}");
+            assert!(
+                said.contains("Without it numbers of the file would have to be much farther off"),
+                "{said}"
+            );
         });
     }
 

@@ -48,9 +48,9 @@ pub fn spread(data: &[Datum], header: &RigHeader) -> Vec<f64> {
     if let Some(spread) = stated(data, header) {
         return spread;
     }
-    // there is one load cell, and one that is read at each of some stations is one sensor; but along
-    // an axis on which the rod is far stiffer it is the displacement that scatters, as much as the
-    // others do at least
+    // there is one load cell, and one that is read at each of some stations is one sensor; but
+    // along an axis on which the rod is far stiffer it is the displacement that scatters, as much
+    // as the others do at least
     let stiffer = stiffer(data).map(|stiffer| if stiffer > ALIKE { stiffer } else { 1.0 });
     let stiff = |d: &Datum| if d.imposed.is_some() { stiffer[d.direction.axis.index()] } else { 1.0 };
     let cell = |d: &Datum| (stiff(d) > 1.0).then_some(d.direction.axis);
@@ -309,8 +309,8 @@ mod tests {
         assert_eq!(spread_of(rattles, |_| 0.0), [1.0; 3]);
     }
 
-    /// Along an axis on which the rod is twenty times stiffer 0.5 µm of the displacement are as much
-    /// as 10 µm along the other.
+    /// Along an axis on which the rod is twenty times stiffer 0.5 µm of the displacement are as
+    /// much as 10 µm along the other.
     #[test]
     fn loads_along_a_stiff_axis_scatter_by_the_displacement() {
         let mut random = Random::seeded(7, 0);

@@ -49,7 +49,7 @@ pub static PIPE_STIFFNESS: RigEffect = RigEffect {
     },
     missing: |_| "these loads do not deform it",
     observed: |finding, _| {
-        let (pipe, factor) = (capital(&finding.location.to_string()), number(finding, "factor"));
+        let (pipe, factor) = (capital(finding.location.to_string()), number(finding, "factor"));
         let softer: Quantity = factor.map(|factor| 1.0 / factor);
         format!("{pipe} is {} than in the model", softer.compared("softer", "stiffer"))
     },

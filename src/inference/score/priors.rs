@@ -14,15 +14,34 @@ use crate::inference::{Candidate, Kind};
 /// named.
 pub const PRIOR: (f64, f64, f64) = (0.5, 0.4, 0.1);
 /// Share of it that a mistake has: it is named at odds of 1000, where an effect is at 50.
-pub const MISTAKE: f64 = 0.05;
+const MISTAKE: f64 = 0.05;
+
+/// The weight of all places of an effect together, by its name and whether it is nonparametric.
+type Weights<'a> = BTreeMap<(&'a str, bool), f64>;
+
+fn weights(candidates: &[Candidate]) -> Weights<'_> {
+    let mut weights = Weights::new();
+    for candidate in candidates {
+        *weights.entry((candidate.effect.name, candidate.is_nonparametric)).or_default() += candidate.weight;
+    }
+    weights
+}
+
+/// For each candidate how much rarer its effect is than others of its kind: a mistake, and an
+/// effect whose places have little weight together.
+pub fn rarity(candidates: &[Candidate]) -> Vec<f64> {
+    let weights = weights(candidates);
+    let of_candidate = |candidate: &Candidate| match candidate.effect.kind {
+        Kind::Mistake => MISTAKE,
+        _ => weights[&(candidate.effect.name, candidate.is_nonparametric)].min(1.0),
+    };
+    candidates.iter().map(of_candidate).collect()
+}
 
 /// Ln of each candidate's prior over that of none.
 pub fn priors(candidates: &[Candidate]) -> Vec<f64> {
     let (none, library, unknown) = PRIOR;
-    let mut places: BTreeMap<(&str, bool), f64> = BTreeMap::new();
-    for candidate in candidates {
-        *places.entry((candidate.effect.name, candidate.is_nonparametric)).or_default() += candidate.weight;
-    }
+    let places = weights(candidates);
     let effects = |wanted: bool| {
         places.keys().filter(|(_, is_nonparametric)| *is_nonparametric == wanted).count().max(1) as f64
     };

@@ -2,12 +2,11 @@
 //! rivals.
 
 use crate::inference::columns::linearised::Linearised;
-use crate::inference::score::priors::MISTAKE;
+use crate::inference::score::priors::rarity;
 use crate::inference::search::Search;
 use crate::inference::search::selection::APART;
 use crate::inference::{
-    Candidate, Effect, Estimate, FindingPart, ForwardModel, Hypothesis, Kind, Location, Parameter, Rival,
-    Term,
+    Candidate, Effect, Estimate, FindingPart, ForwardModel, Hypothesis, Location, Parameter, Rival, Term,
 };
 use crate::statistics::{HALF_95, chi_squared_survival, student_t_quantile};
 
@@ -55,13 +54,7 @@ pub fn part(
     let nearly = gained - (2.0 * APART.ln()).max(ABOUT * gained);
     // a mistake is as rare as it is easily looked up, and so is an effect of little weight: neither
     // is less of a rival
-    let rare = |index: usize| match candidates[index].effect {
-        effect if effect.kind == Kind::Mistake => MISTAKE,
-        effect => {
-            let same = candidates.iter().filter(|other| other.effect == effect && !other.is_nonparametric);
-            same.map(|other| other.weight).sum::<f64>().min(1.0)
-        }
-    };
+    let rare = rarity(candidates);
     let own = candidates[term.candidate].effect;
     let many = in_many_places(candidates, &additions);
     let places_of = |effect: &Effect| {
@@ -73,7 +66,7 @@ pub fn part(
         (best, of_other) if best == index && candidates[index].effect != own => of_other / of_own,
         _ => 1.0,
     };
-    let is_above = |index: usize, least: f64| additions[index] + (places(index) / rare(index)).ln() > least;
+    let is_above = |index: usize, least: f64| additions[index] + (places(index) / rare[index]).ln() > least;
     let mut near = search.likeliest(&additions, false);
     near.retain(|&index| index != term.candidate && is_above(index, nearly));
     let surely = near.iter().filter(|&&index| is_above(index, least)).count();
@@ -82,7 +75,7 @@ pub fn part(
         .into_iter()
         .filter_map(|index| {
             let other = search.with(&rest, index);
-            let factor = rare(index) / places(index);
+            let factor = rare[index] / places(index);
             let odds = (hypothesis.log_probability - other.log_probability).exp() * factor;
             let own = other.terms.last()?.clone();
             let (effect, location) = (candidates[index].effect, model.location(&own));

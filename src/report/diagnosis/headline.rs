@@ -254,8 +254,8 @@ fn worth(subject: &Subject) -> String {
             only_in_part(subject, it, (before, after))
         ),
         Some(_) if mistakes.is_empty() && take_numbers_place(&subject.diagnosis.findings) => format!(
-            " Without {it} numbers of the file would have to be much farther off than their uncertainties allow; \
-             then they would predict held-out {} as well. {}",
+            " Held-out {} do not distinguish {it} from numbers of the file that would be off by much more than \
+             their uncertainties. {}",
             subject.noun,
             capital(&scatter)
         ),

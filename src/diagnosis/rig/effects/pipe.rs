@@ -2,7 +2,7 @@
 
 use super::entry::{RigEffect, Usual, along_the_load, entry, number, parameter};
 use crate::diagnosis::rig::mechanics::action::Action;
-use crate::diagnosis::rig::mechanics::structure::{Of, with_stiffer};
+use crate::diagnosis::rig::mechanics::structure::{WhichPipe, with_stiffer};
 use crate::inference::{Candidate, Effect, Kind, Location, Part, Quantity, Reported, WrittenTo};
 use crate::units::capital;
 
@@ -16,7 +16,7 @@ const SCALES: (f64, f64) = (1.0 / 3.0, 3.0);
 const RARE: f64 = 2.0 / 40.0;
 
 /// The pipes as places.
-const PIPES: [(Part, Of); 2] = [(Part::Pipe1, Of::Pipe1), (Part::Pipe2, Of::Pipe2)];
+const PIPES: [(Part, WhichPipe); 2] = [(Part::Pipe1, WhichPipe::First), (Part::Pipe2, WhichPipe::Second)];
 
 /// Moduli, or walls, of one pipe.
 pub static PIPE_STIFFNESS: RigEffect = RigEffect {
@@ -28,7 +28,7 @@ pub static PIPE_STIFFNESS: RigEffect = RigEffect {
         prior: "15 %: walls of tubes are within 12.5 % (EN ISO 1127, class T2); each pipe as rare as one of forty places of a joint",
         parameters: &[(&["factor"], "actual over nominal stiffness")],
         needs: "a rod file",
-        cause: "moduli, walls or lengths of one pipe that differ from the rod file",
+        cause: "its moduli, walls or length differ from the rod file",
         cause_at: |place| format!("moduli, walls or lengths of {place} that differ from the rod file"),
         written_to: WrittenTo::Model,
         reported: Reported::Alone,

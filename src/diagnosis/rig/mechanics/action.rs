@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::display::Display;
 use super::load_history::{History, Memory, Onset};
-use super::structure::{Nodes, Of};
+use super::structure::{Nodes, WhichPipe};
 use crate::diagnosis::rig::own_effect::law::OwnLaw;
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::spatial::Axis;
@@ -25,7 +25,7 @@ pub enum Action {
     /// Factor on E and G \[1\].
     Stiffness,
     /// The same of one pipe \[1\].
-    StiffnessOf(Of),
+    StiffnessOf(WhichPipe),
     /// Factor on G \[1\].
     ShearModulus,
     /// Flexibility factor of the bend \[that of the rod file\].

@@ -83,7 +83,7 @@ impl Structure {
         let stiffer = responses(&with_moduli(&without_joints, 1.0, 2.0), &pairs)?;
         // moduli twice as high halve what a pipe is responsible for
         let [first, second] =
-            Of::BOTH.map(|pipe| responses(&with_stiffer(&without_joints, pipe, 2.0), &pairs));
+            WhichPipe::BOTH.map(|pipe| responses(&with_stiffer(&without_joints, pipe, 2.0), &pairs));
         let of_pipes = [first?, second?].map(|stiffer| difference(&pipes, &stiffer, 2.0));
         let arc = match rod.arc_length() > 0.0 {
             true => {
@@ -296,21 +296,21 @@ fn difference(a: &[Matrix3<f64>], b: &[Matrix3<f64>], factor: f64) -> Parts {
 
 /// One of the two pipes of a rod.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Of {
+pub enum WhichPipe {
     /// From the flange to the bend.
-    Pipe1,
+    First,
     /// From the bend to the tip.
-    Pipe2,
+    Second,
 }
 
-impl Of {
+impl WhichPipe {
     /// From the flange on.
-    pub const BOTH: [Of; 2] = [Of::Pipe1, Of::Pipe2];
+    pub const BOTH: [WhichPipe; 2] = [WhichPipe::First, WhichPipe::Second];
 }
 
 /// A rod with other moduli of one pipe, of its sleeves, and of the bend where that is pipe 1's: a
 /// factor on E and G.
-pub fn with_stiffer(rod: &Rod, pipe: Of, factor: f64) -> Rod {
+pub fn with_stiffer(rod: &Rod, pipe: WhichPipe, factor: f64) -> Rod {
     let (mut stiffer, corner) = (rod.clone(), rod.bend_start());
     let is_of_first = |station: f64| station < corner;
     let of_pipe = |own: &mut Pipe| {
@@ -318,16 +318,16 @@ pub fn with_stiffer(rod: &Rod, pipe: Of, factor: f64) -> Rod {
         own.material.shear_modulus *= factor;
     };
     match pipe {
-        Of::Pipe1 => {
+        WhichPipe::First => {
             of_pipe(&mut stiffer.pipe1);
             if rod.bend == rod.pipe1 {
                 of_pipe(&mut stiffer.bend);
             }
         }
-        Of::Pipe2 => of_pipe(&mut stiffer.pipe2),
+        WhichPipe::Second => of_pipe(&mut stiffer.pipe2),
     }
     let sleeves = stiffer.sleeves.iter_mut();
-    let own = sleeves.filter(|sleeve| is_of_first(sleeve.from) == (pipe == Of::Pipe1));
+    let own = sleeves.filter(|sleeve| is_of_first(sleeve.from) == (pipe == WhichPipe::First));
     own.for_each(|sleeve| of_pipe(&mut sleeve.pipe));
     stiffer
 }

@@ -158,8 +158,8 @@ pub fn places(found: &RigDiagnosis, rod: &Rod) -> Option<Figure> {
         kind: StationKind::Located,
     };
     let stretch = |place: &Located| {
-        let (from, to) = place.between?;
-        Some(Stretch { label: "where it may be".into(), points_mm: line(from, to) })
+        let (label, from, to) = place.stretch?;
+        Some(Stretch { label: label.into(), points_mm: line(from, to) })
     };
     // pipe I, what there is of a bend, and pipe II: the corner is a point of the line
     let (start, end) = (rod.bend_start(), rod.bend_end());
@@ -179,8 +179,7 @@ pub fn places(found: &RigDiagnosis, rod: &Rod) -> Option<Figure> {
         ..drawing(rod)
     });
     let names: Vec<&str> = located.iter().map(|place| place.label.as_str()).collect();
-    let caption =
-        format!("Where the rod is more compliant than its model: {}. {}", names.join("; "), figure.caption);
+    let caption = format!("Where the rod differs from its model: {}. {}", names.join("; "), figure.caption);
     Some(figure.named("places").captioned(caption))
 }
 
@@ -188,18 +187,63 @@ pub fn places(found: &RigDiagnosis, rod: &Rod) -> Option<Figure> {
 struct Located {
     label: String,
     at: f64,
-    between: Option<(f64, f64)>,
+    /// From where to where, and what that says.
+    stretch: Option<(&'static str, f64, f64)>,
 }
 
 /// A ring around the place, where it is one of the rod.
 fn located(finding: &Finding, rod: &Rod) -> Option<Located> {
     let label = finding.location.to_string();
-    let (at, between) = match &finding.location {
+    let whole = |from: f64, to: f64| (0.5 * (from + to), Some(("the whole pipe", from, to)));
+    let (at, stretch) = match &finding.location {
         Location::Part(Part::Root) | Location::InSession { part: Part::Root, .. } => (0.0, None),
+        Location::Part(Part::Pipe1) => whole(0.0, rod.bend_start()),
+        Location::Part(Part::Pipe2) => whole(rod.bend_end(), rod.length()),
         Location::Part(Part::Bend) => (0.5 * (rod.bend_start() + rod.bend_end()), None),
-        Location::Station(at) => (*at, finding.place_estimate().map(|place| (place.low, place.high))),
+        Location::Station(at) => {
+            let place = finding.place_estimate();
+            (*at, place.map(|place| ("where it may be", place.low, place.high)))
+        }
         Location::Named(name) => (rod.joints.iter().find(|joint| &joint.name == name)?.station, None),
         _ => return None,
     };
-    Some(Located { label, at, between })
+    Some(Located { label, at, stretch })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::beam::{Physics, RodModel};
+    use crate::diagnosis::rig::diagnose;
+    use crate::rig::readings::Readings;
+    use crate::section::Round;
+    use crate::statistics::Random;
+
+    /// Walls of pipe 1 that are thinner than the file's.
+    #[test]
+    fn a_pipe_that_differs_is_drawn_as_a_whole() {
+        let file = Rod::from_toml("rod", include_str!("../../../../rods/5.toml")).unwrap();
+        let mut actual = file.clone();
+        actual.pipe1.section = Round::tube(32e-3, 30.4e-3).into();
+        let model = RodModel::new(&actual, &Physics::WHOLE, 1, &[]).unwrap();
+        let c = model.force_response(actual.length(), actual.length()).unwrap().translation / UM;
+        let mut random = Random::seeded(8, 0);
+        let mut text = "axis,load_n,trial,dx_um,dy_um,dz_um\n".to_owned();
+        for (trial, axis) in (1..5).flat_map(|trial| (0..3).map(move |axis| (trial, axis))) {
+            for load in [5.0, 10.0, 15.0, 20.0] {
+                let [x, y, z] = [0, 1, 2].map(|channel| c[(channel, axis)] * load + random.normal());
+                text += &format!("{},{load},{trial},{x:.1},{y:.1},{z:.1}\n", ["x", "y", "z"][axis]);
+            }
+        }
+        let found = diagnose(&Readings::from_text("f", &text).unwrap(), Some(&file)).unwrap();
+        let finding = found.diagnosis.findings.first().unwrap();
+        let own = located(finding, &file).unwrap();
+        assert_eq!((own.label.as_str(), own.stretch), ("pipe 1", Some(("the whole pipe", 0.0, file.l1))));
+        let figure = places(&found, &file).unwrap();
+        assert!(
+            figure.caption.starts_with("Where the rod differs from its model: pipe 1."),
+            "{}",
+            figure.caption
+        );
+    }
 }

@@ -66,7 +66,7 @@ fn a_pipe_that_is_softer_by_itself_is_the_rod_with_its_moduli() {
         [with_sleeve(&rod("bend_radius_mm = 0.0 ")), rod("bend_radius_mm = 40\nbend_flexibility = 1.3")]
     {
         let structure = Structure::new(&rod, pairs(&rod)).unwrap();
-        for pipe in Of::BOTH {
+        for pipe in WhichPipe::BOTH {
             let mut pipes = [1.0; 2];
             pipes[pipe as usize] = 0.6;
             let expected = responses(&with_stiffer(&rod, pipe, 0.6), &pairs(&rod)).unwrap();

@@ -1,6 +1,8 @@
 //! Which terms keep their names once held-out data have spoken, and once all that may stand beside
 //! them has.
 
+use nalgebra::DVector;
+
 use crate::inference::columns::background::Folded;
 use crate::inference::columns::linearised::Linearised;
 use crate::inference::held_out::Theme;
@@ -11,7 +13,8 @@ use crate::inference::{FindingPart, ForwardModel, HeldOut, Hypothesis, Kind, Riv
 
 /// A hypothesis without physics that held-out data do not confirm: where they are predicted no
 /// worse without it, nor without it and another one that it undoes, it has no name. What happened
-/// once says nothing of other data. Nor do they speak against an effect in whose place the numbers
+/// once says nothing of other data, nor does a mistake that was made in one fold alone. Nor do they
+/// speak against an effect in whose place the numbers
 /// of the file would be as far off as they cannot be: these predict as well as it does.
 ///
 /// Nor has a name what fits the data no better than the numbers of the file do in its place, where
@@ -52,9 +55,14 @@ pub fn confirmed(
         let own = Theme::new(candidate);
         let is_needed =
             held_out.independent_loss(own) > 0.0 && !needless.iter().any(|themes| themes.contains(&own));
-        candidate.effect.kind == Kind::Event || {
-            (is_needed && !fits_no_better(&without(&hypothesis, own))) || takes_place(own)
-        }
+        let happened_once = match candidate.effect.kind {
+            Kind::Event => true,
+            Kind::Mistake => {
+                is_of_one_fold(&model.response(std::slice::from_ref(term)), &folded.evidence.fold)
+            }
+            Kind::Physics => false,
+        };
+        happened_once || { (is_needed && !fits_no_better(&without(&hypothesis, own))) || takes_place(own) }
     };
     let is_found_again = |term: &Term| {
         let candidate = &model.candidates()[term.candidate];
@@ -82,6 +90,14 @@ pub fn confirmed(
         return (hypothesis, None);
     }
     (shorter, left_over)
+}
+
+/// True of what changes the data of one fold only.
+fn is_of_one_fold(response: &DVector<f64>, fold: &[usize]) -> bool {
+    let changed = response.iter().zip(fold).filter(|(change, _)| **change != 0.0);
+    let mut folds: Vec<usize> = changed.map(|(_, fold)| *fold).collect();
+    folds.dedup();
+    folds.iter().all(|fold| *fold == folds[0])
 }
 
 /// True of what happened once, of what predicts held-out data, and, where nothing is left beside
@@ -152,6 +168,13 @@ pub fn outdone(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_of_one_fold_changes_no_other() {
+        let fold = [0, 0, 1, 1, 2];
+        assert!(is_of_one_fold(&DVector::from_vec(vec![0.0, 0.0, 3.0, -1.0, 0.0]), &fold));
+        assert!(!is_of_one_fold(&DVector::from_vec(vec![0.0, 1.0, 3.0, 0.0, 0.0]), &fold));
+    }
 
     #[test]
     fn what_neither_predicts_nor_comes_back_has_no_name() {

@@ -204,3 +204,28 @@ fn temperatures_are_those_between_the_steps_of_the_display() {
         }
     }
 }
+
+/// A zero of one run of five that was not taken, nearly as far off as the rod bends: no other run can
+/// confirm it, and it is named all the same.
+#[test]
+fn a_zero_of_one_run_needs_no_other_run() {
+    let rod = rod("");
+    let y = compliance(&rod)[(1, 1)] / UM;
+    let mut random = crate::statistics::Random::seeded(5, 0);
+    let mut text = "axis,load_n,phase,dy_um\n".to_owned();
+    for run in 0..5 {
+        for (load, phase) in
+            [(2.5, "load"), (4.7, "load"), (7.5, "load"), (9.2, "load"), (7.5, "unload"), (4.7, "unload")]
+        {
+            let zero = if run == 1 { -0.9 * 9.2 * y } else { 0.0 };
+            text += &format!("y,{load},{phase},{:.1}\n", y * load + zero + 2.0 * random.normal());
+        }
+    }
+    let found = crate::diagnosis::rig::diagnose(&readings(&text), Some(&rod)).unwrap().diagnosis;
+    let finding = &found.findings[0];
+    assert_eq!(
+        (finding.effect.name, finding.location.to_string().as_str()),
+        ("offset_mistake", "dy_um, axis y, rows 7 to 12")
+    );
+    assert!((finding.estimates[0].value / UM + 0.9 * 9.2 * y).abs() < 10.0);
+}

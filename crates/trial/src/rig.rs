@@ -32,6 +32,7 @@ mod uncertainty;
 mod written;
 
 use self::bench::Bench;
+use self::effect::Dimension;
 pub use self::effect::Effect;
 pub use self::follow_up::{FollowUp, Proposed, follow_up};
 use self::mistake::Mistake;
@@ -299,6 +300,13 @@ fn parameters(bench: &Bench, effect: &Effect, with: &[f64]) -> Vec<Parameter> {
         Effect::Bend(factor) => {
             let bends = |drawing: &drawing::Drawing| drawing.tubes[0].flexibility(1.0, 1.0).bending;
             Some(factor * bends(&bench.actual.rod(&bench.drawing)) / bends(&bench.drawing))
+        }
+        Effect::PipeStiffness { pipe, factor } => {
+            let bends = |drawing: &drawing::Drawing| drawing.tubes[*pipe].flexibility(1.0, 1.0).bending;
+            Some(factor * bends(&bench.drawing) / bends(&bench.actual.rod(&bench.drawing)))
+        }
+        Effect::Dimension { which: Dimension::Leg(leg), by, .. } => {
+            Some((bench.actual.rod(&bench.drawing).legs[*leg] + by) / MM)
         }
         _ => None,
     };

@@ -20,7 +20,7 @@ use super::actual::Actual;
 use super::cosserat::{Body, Hinge};
 use super::direction::{direction, rotation, turn};
 use super::drawing::{Deviation, Drawing};
-use super::effect::Effect;
+use super::effect::{Dimension, Effect, End};
 use super::load_history::creep_compliance;
 use super::protocol::{Loading, Protocol};
 
@@ -58,14 +58,17 @@ impl Solver {
 impl Bench {
     /// The reading of every cell without noise, m.
     pub fn readings(&self, effects: &[Effect]) -> Vec<f64> {
-        let rod = self.actual.rod(&self.drawing);
+        let rod = shaped(self.actual.rod(&self.drawing), effects);
         let forces = self.forces(effects);
         let mut solver = Solver { body: body(&rod, effects), known: HashMap::new() };
         let loadings: Vec<Loading> = self
             .protocol
             .loadings
             .iter()
-            .map(|l| Loading { stations: l.stations.map(|s| self.station(&rod, s)), ..l.clone() })
+            .map(|l| {
+                let at = |end: End| self.station(&rod, effects, end, l.stations[end as usize]);
+                Loading { stations: [End::Load, End::Reading].map(at), ..l.clone() }
+            })
             .collect();
         let mut displaced: Vec<Vector3<f64>> =
             loadings.iter().zip(&forces).map(|(l, force)| solver.deflection(force, l.stations)).collect();
@@ -88,12 +91,17 @@ impl Bench {
         cells.iter().enumerate().map(read).collect()
     }
 
-    /// Where a station of the readings is on the real rod, m.
-    fn station(&self, rod: &Drawing, station: f64) -> f64 {
-        match station == self.protocol.tip {
+    /// Where what stands at a station of the readings is on the real rod, m.
+    fn station(&self, rod: &Drawing, effects: &[Effect], end: End, station: f64) -> f64 {
+        let own = match station == self.protocol.tip {
             true => rod.length(),
-            false => self.actual.station(station).clamp(0.0, rod.length()),
-        }
+            false => self.actual.station(station),
+        };
+        let displaced = effects.iter().map(|effect| match effect {
+            Effect::Point { end: of, station: at, by } if *of == end && *at == station => *by,
+            _ => 0.0,
+        });
+        (own + displaced.sum::<f64>()).clamp(0.0, rod.length())
     }
 
     /// Displacement along each axis per newton along it at the tip, m/N, of the real rod.
@@ -203,6 +211,18 @@ impl Bench {
     }
 }
 
+/// The rod with what is wrong with its shape.
+fn shaped(mut rod: Drawing, effects: &[Effect]) -> Drawing {
+    for effect in effects {
+        match *effect {
+            Effect::Dimension { which: Dimension::Leg(leg), by, .. } => rod.legs[leg] += by,
+            Effect::Dimension { which: Dimension::Angle, by, .. } => rod.gamma += by,
+            _ => {}
+        }
+    }
+    rod
+}
+
 /// The rod with what is wrong with its stiffness.
 fn body(rod: &Drawing, effects: &[Effect]) -> Body {
     let mut deviation = Deviation::default();
@@ -210,6 +230,7 @@ fn body(rod: &Drawing, effects: &[Effect]) -> Body {
         match *effect {
             Effect::StiffnessScale(factor) => deviation.stiffness *= factor,
             Effect::ShearModulus(factor) => deviation.shear *= factor,
+            Effect::PipeStiffness { pipe, factor } => deviation.pipes[pipe] *= factor,
             Effect::Bend(factor) => deviation.bend = Some(factor),
             Effect::Joint { station, bending, torsion, .. } => {
                 deviation.hinges.push(Hinge { station, bending, torsion });

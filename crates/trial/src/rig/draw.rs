@@ -9,6 +9,9 @@
 //! | `shear_modulus` | the same | 60 % |
 //! | `joint_compliance`, `root_compliance` | of the rod's own ∫ds/EI; torsion 0.3 to 3 times that share of ∫ds/GJ, or none | 100 % |
 //! | `bend_flexibility` | of what the series for an oval section gives | 2 |
+//! | `pipe_stiffness` | the same of one pipe, either sign | 50 % |
+//! | `rod_dimension` | of l1 or l2, either sign; the angle | 10 %; 6° |
+//! | `load_point`, `sensor_point` | of the rod's length, of one station, towards the flange | 12 % |
 //! | `friction`, `load_offset` | force, N, and of the smallest load | 2, 0.7 |
 //! | `backlash` | play, µm | 100 |
 //! | `creep` | per decade | 10 % |
@@ -21,15 +24,22 @@
 //!
 //! The largest size is 0.5 to 1 times that.
 
+use std::f64::consts::PI;
+
 use super::bench::Bench;
-use super::effect::Effect;
+use super::effect::{Dimension, Effect, End};
 use super::setup::Needs;
+use super::sizes::{ANGLE, LENGTH, PIPE, POINT};
 use crate::chance::{happens, log_uniform, one_of};
 use rodcal_base::statistics::Random;
 use rodcal_base::units::{DEG, UM};
 
 /// Effects that a library may have, by number for [`library`].
-pub const LIBRARY: usize = 16;
+pub const LIBRARY: usize = 19;
+/// The number of what belongs to a single run.
+const SLIP: usize = LIBRARY - 1;
+/// What may be taken of a pipe at most, so that a point of it stays on it.
+const OF_PIPE: f64 = 0.8;
 /// Range of the largest size, of the end in the table.
 const LARGEST: (f64, f64) = (0.5, 1.0);
 /// Runs on either side of a slip between runs.
@@ -39,7 +49,7 @@ const RUNS_BESIDE: usize = 2;
 pub fn needs(effect: usize, random: &mut Random) -> Needs {
     let mut needs = Needs::default();
     match effect {
-        15 if happens(random, 0.4) => {
+        SLIP if happens(random, 0.4) => {
             needs = Needs { zeroed_once: true, trials: true, two_channels: true, long_runs: true, ..needs };
         }
         4 => needs.arc = true,
@@ -48,7 +58,9 @@ pub fn needs(effect: usize, random: &mut Random) -> Needs {
         12 => needs.two_channels = true,
         14 => needs.clock = true,
         7 => needs.tip = true,
-        15 => needs.long_runs = true,
+        // one axis shows a shape no better than moduli
+        15..=17 => needs = Needs { two_axes: true, two_channels: true, ..needs },
+        SLIP => needs.long_runs = true,
         _ => {}
     }
     needs
@@ -59,7 +71,7 @@ pub fn needs(effect: usize, random: &mut Random) -> Needs {
 pub fn careful(effect: usize, random: &mut Random) -> Needs {
     let needs = Needs { two_axes: true, two_channels: true, ..needs(effect, random) };
     match effect {
-        0..=4 => Needs { stations: happens(random, 0.4), ..needs },
+        0..=4 | 15..=17 => Needs { stations: happens(random, 0.4), ..needs },
         5 | 6 | 8 => Needs { unloading: true, ..needs },
         _ => needs,
     }
@@ -148,6 +160,36 @@ pub fn library(effect: usize, bench: &Bench, random: &mut Random) -> Effect {
                 false => Effect::Drift { channel: one_of(random, &channels, 0), rate, by_time },
             }
         }
+        15 => {
+            let factor = 1.0 + sign(random, 0.5) * large(random, PIPE);
+            Effect::PipeStiffness { pipe: random.index(2), factor }
+        }
+        16 => {
+            let (legs, gamma) = (bench.drawing.legs, bench.drawing.gamma);
+            match random.index(3) {
+                2 => {
+                    // a pipe that is straight has no other side
+                    let by = sign(random, 0.5) * large(random, ANGLE);
+                    let by = if gamma + by > PI { -by } else { by };
+                    Effect::Dimension { which: Dimension::Angle, stated: gamma, by }
+                }
+                leg => {
+                    let by = sign(random, 0.5) * large(random, LENGTH) * legs[leg];
+                    Effect::Dimension { which: Dimension::Leg(leg), stated: legs[leg], by }
+                }
+            }
+        }
+        17 => {
+            let end = if happens(random, 0.5) { End::Load } else { End::Reading };
+            let stations = protocol.stations_of(end);
+            let station = one_of(random, &stations, protocol.tip);
+            let drawing = &bench.drawing;
+            let corner = drawing.legs[0] - drawing.tangent();
+            let pipe =
+                if station > corner + drawing.arc() { station - corner - drawing.arc() } else { station };
+            let by = -(large(random, POINT) * drawing.length()).min(OF_PIPE * pipe);
+            Effect::Point { end, station, by }
+        }
         _ => slip(bench, sign(random, 0.5) * large(random, 500.0) * UM, random),
     }
 }
@@ -201,9 +243,21 @@ pub(super) fn all(bench: &Bench, share: f64) -> Vec<Vec<Effect>> {
         vec![Effect::StiffnessScale(1.0 - 0.4 * share)],
         vec![Effect::ShearModulus(1.0 - 0.6 * share)],
         vec![Effect::Root { bending, torsion: 0.0 }, Effect::Root { bending: 0.0, torsion }],
+        vec![Effect::PipeStiffness { pipe: 0, factor: 1.0 - PIPE * share }],
+        vec![Effect::PipeStiffness { pipe: 1, factor: 1.0 - PIPE * share }],
+        vec![Effect::Dimension { which: Dimension::Angle, stated: bench.drawing.gamma, by: -ANGLE * share }],
         vec![Effect::Cubic(0.2 * share / (largest * largest))],
         vec![Effect::Quadratic(0.2 * share / largest)],
     ];
+    for (leg, stated) in bench.drawing.legs.into_iter().enumerate() {
+        let by = LENGTH * share * stated;
+        all.push(vec![Effect::Dimension { which: Dimension::Leg(leg), stated, by }]);
+    }
+    for end in [End::Load, End::Reading] {
+        let by = -POINT * share * bench.drawing.length();
+        let of_station = |station| vec![Effect::Point { end, station, by }];
+        all.extend(protocol.stations_of(end).into_iter().map(of_station));
+    }
     if bench.drawing.arc() > 0.0 {
         let oval = bench.drawing.tubes[0].ovalisation(bench.drawing.bend_radius);
         all.push(vec![Effect::Bend(bench.drawing.bend_factor + 2.0 * share * (oval - 1.0))]);

@@ -39,6 +39,8 @@ pub struct Deviation {
     pub stiffness: f64,
     /// Factor on G besides.
     pub shear: f64,
+    /// Factors on E and G of each pipe besides; the bend is of the first.
+    pub pipes: [f64; 2],
     /// Flexibility factor of the bend; `None`: the drawing's.
     pub bend: Option<f64>,
     /// Joints that give way.
@@ -49,7 +51,7 @@ pub struct Deviation {
 
 impl Default for Deviation {
     fn default() -> Self {
-        Deviation { stiffness: 1.0, shear: 1.0, bend: None, hinges: Vec::new(), wave: None }
+        Deviation { stiffness: 1.0, shear: 1.0, pipes: [1.0; 2], bend: None, hinges: Vec::new(), wave: None }
     }
 }
 
@@ -87,7 +89,7 @@ impl Drawing {
     pub fn body(&self, deviation: &Deviation) -> Body {
         let tangent = self.tangent();
         let [first, second] = [0, 1].map(|k| {
-            let factor = deviation.stiffness;
+            let factor = deviation.stiffness * deviation.pipes[k];
             let flexibility = self.tubes[k].flexibility(factor, factor * deviation.shear);
             Piece { length: self.legs[k] - tangent, corner: 0.0, curvature: 0.0, flexibility }
         });

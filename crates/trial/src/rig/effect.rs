@@ -5,6 +5,24 @@ use crate::effect_name::EffectName;
 use crate::place::{Axes, Place};
 use rodcal_base::units::{DEG, MM, UM, URAD_PER_NM};
 
+/// A number of the rod's shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dimension {
+    /// Flange to corner, and corner to tip.
+    Leg(usize),
+    /// Between the pipes.
+    Angle,
+}
+
+/// What is at a station: loads or sensors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// Where loads act.
+    Load,
+    /// Where sensors read.
+    Reading,
+}
+
 /// Something that is wrong, SI.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs, reason = "fields are in the words of their effects")]
@@ -19,6 +37,12 @@ pub enum Effect {
     Root { bending: f64, torsion: f64 },
     /// The bend's flexibility factor, where the file says that of a beam.
     Bend(f64),
+    /// Factor on E and G of one pipe: 0 is that at the flange.
+    PipeStiffness { pipe: usize, factor: f64 },
+    /// A length or the angle of the rod is another one than stated: by so much, m or rad.
+    Dimension { which: Dimension, stated: f64, by: f64 },
+    /// What is stated at this station, m, is so much farther along the rod.
+    Point { end: End, station: f64, by: f64 },
     /// Coulomb friction of the slide under loads along `axis` (`None`: all), N. It takes
     /// `presliding` (m) of travel to turn round, and at every reading the slide sticks with up to
     /// the share `scatter` less than the full value.
@@ -102,6 +126,10 @@ impl Effect {
             Effect::Joint { .. } => EffectName::JointCompliance,
             Effect::Root { .. } => EffectName::RootCompliance,
             Effect::Bend(_) => EffectName::BendFlexibility,
+            Effect::PipeStiffness { .. } => EffectName::PipeStiffness,
+            Effect::Dimension { .. } => EffectName::RodDimension,
+            Effect::Point { end: End::Load, .. } => EffectName::LoadPoint,
+            Effect::Point { end: End::Reading, .. } => EffectName::SensorPoint,
             Effect::Friction { .. } => EffectName::Friction,
             Effect::LoadOffset { .. } => EffectName::LoadOffset,
             Effect::Backlash { .. } => EffectName::Backlash,
@@ -143,6 +171,17 @@ impl Effect {
             Effect::Joint { station, .. } => Place { station_mm: Some(station / MM), ..Place::default() },
             Effect::Root { .. } => Place::part("root"),
             Effect::Bend(_) => Place::part("bend"),
+            Effect::PipeStiffness { pipe, .. } => Place::part(if *pipe == 0 { "pipe 1" } else { "pipe 2" }),
+            Effect::Dimension { which, .. } => Place::part(match which {
+                Dimension::Leg(0) => "length l1",
+                Dimension::Leg(_) => "length l2",
+                Dimension::Angle => "angle γ",
+            }),
+            Effect::Point { end, station, .. } => match (protocol.stations_of(*end).len() > 1, end) {
+                (true, _) => Place { station_mm: Some(station / MM), ..Place::default() },
+                (false, End::Load) => Place::part("load point"),
+                (false, End::Reading) => Place::part("read point"),
+            },
             Effect::Friction { axis, .. } => of_axis("slide", axis),
             Effect::LoadOffset { axis, .. } => of_axis("hanger", axis),
             Effect::Backlash { axis, .. } => of_axis("clamp", axis),
@@ -195,6 +234,14 @@ impl Effect {
             Effect::StiffnessScale(factor) | Effect::ShearModulus(factor) | Effect::Bend(factor) => {
                 vec![("factor", *factor)]
             }
+            Effect::PipeStiffness { factor, .. } => vec![("factor", *factor)],
+            Effect::Dimension { which: Dimension::Leg(_), stated, by } => {
+                vec![("length_mm", (stated + by) / MM)]
+            }
+            Effect::Dimension { which: Dimension::Angle, stated, by } => {
+                vec![("gamma_deg", (stated + by) / DEG)]
+            }
+            Effect::Point { by, .. } => vec![("along_mm", by / MM)],
             Effect::Joint { bending, torsion, .. } | Effect::Root { bending, torsion } => vec![
                 ("bending_urad_per_nm", bending / URAD_PER_NM),
                 ("torsion_urad_per_nm", torsion / URAD_PER_NM),

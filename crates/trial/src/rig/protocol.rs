@@ -4,6 +4,7 @@
 use std::fmt::Write;
 
 use super::drawing::rounded;
+use super::effect::End;
 use crate::place::Place;
 use rodcal_base::units::{MM, STANDARD_GRAVITY, UM};
 
@@ -155,6 +156,15 @@ impl Protocol {
     pub fn stations(&self) -> Vec<f64> {
         let mut stations: Vec<f64> = self.loadings.iter().flat_map(|l| l.stations).collect();
         stations.retain(|station| *station != self.tip);
+        stations.sort_by(f64::total_cmp);
+        stations.dedup();
+        stations
+    }
+
+    /// Where loads act, or sensors read, m from the flange: each station once.
+    pub fn stations_of(&self, end: End) -> Vec<f64> {
+        let mut stations: Vec<f64> =
+            self.loadings.iter().map(|loading| loading.stations[end as usize]).collect();
         stations.sort_by(f64::total_cmp);
         stations.dedup();
         stations

@@ -2,11 +2,18 @@
 //! out.
 
 use super::bench::Bench;
-use super::effect::Effect;
+use super::effect::{Dimension, Effect};
 use rodcal_base::units::{DEG, UM};
 
 /// Largest force of friction or of a load's offset, N, and largest share of the smallest load.
 const FORCE: (f64, f64) = (2.0, 0.7);
+
+/// Of one pipe's stiffness, of a length and of a rod's whole length, as shares.
+pub(super) const PIPE: f64 = 0.5;
+pub(super) const LENGTH: f64 = 0.1;
+pub(super) const POINT: f64 = 0.12;
+/// Of the angle between the pipes, rad.
+pub(super) const ANGLE: f64 = 6.0 * DEG;
 
 impl Effect {
     /// Its sizes, 0 for no effect, each with the upper end of the range that it is drawn from.
@@ -24,6 +31,10 @@ impl Effect {
                 let oval = bench.drawing.tubes[0].ovalisation(bench.drawing.bend_radius);
                 vec![(factor - 1.0, 2.0 * (oval - 1.0))]
             }
+            Effect::PipeStiffness { factor, .. } => vec![(factor - 1.0, PIPE)],
+            Effect::Dimension { which: Dimension::Leg(_), stated, by } => vec![(by, LENGTH * stated)],
+            Effect::Dimension { which: Dimension::Angle, by, .. } => vec![(by, ANGLE)],
+            Effect::Point { by, .. } => vec![(by, POINT * bench.drawing.length())],
             Effect::Friction { force, .. } => vec![(force, FORCE.0.min(FORCE.1 * smallest))],
             Effect::LoadOffset { force, .. } => vec![(force, FORCE.0)],
             Effect::Backlash { play, .. } => vec![(play, 100.0 * UM)],
@@ -58,6 +69,9 @@ impl Effect {
             | Effect::StiffnessScale(size)
             | Effect::ShearModulus(size)
             | Effect::Bend(size)
+            | Effect::PipeStiffness { factor: size, .. }
+            | Effect::Dimension { by: size, .. }
+            | Effect::Point { by: size, .. }
             | Effect::Friction { force: size, .. }
             | Effect::LoadOffset { force: size, .. }
             | Effect::Backlash { play: size, .. }
@@ -86,13 +100,16 @@ impl Effect {
             Effect::StiffnessScale(factor)
             | Effect::ShearModulus(factor)
             | Effect::Bend(factor)
+            | Effect::PipeStiffness { factor, .. }
             | Effect::SensorScale { factor, .. } => *factor = 1.0 + share * (*factor - 1.0),
             Effect::GapCloses { share: stiff, .. } => *stiff = 1.0 + share * (*stiff - 1.0),
             Effect::Joint { bending, torsion, .. } | Effect::Root { bending, torsion } => {
                 *bending *= share;
                 *torsion *= share;
             }
-            Effect::Friction { force: size, .. }
+            Effect::Dimension { by: size, .. }
+            | Effect::Point { by: size, .. }
+            | Effect::Friction { force: size, .. }
             | Effect::LoadOffset { force: size, .. }
             | Effect::Backlash { play: size, .. }
             | Effect::Creep { per_decade: size, .. }

@@ -9,6 +9,7 @@
 //! ten times as large, has the same answer. "The paper": Improved
 //! MultiCal, Sensors 2023, 23(12), 5717.
 
+pub(super) mod dimension;
 pub(super) mod display;
 pub mod entry;
 pub(super) mod events;
@@ -17,6 +18,7 @@ pub(super) mod load;
 pub mod mistakes;
 pub(super) mod pipe;
 pub(super) mod places;
+pub(super) mod points;
 pub mod registry;
 pub(super) mod sensor;
 pub(super) mod structure;

@@ -2,6 +2,7 @@
 //! them share.
 
 mod files;
+mod geometry;
 mod load;
 mod named;
 mod reading;

@@ -165,6 +165,12 @@ pub enum Part {
     Pipe1,
     /// That from its bend to the tip.
     Pipe2,
+    /// How long the rod is from its flange to its corner, L1.
+    Length1,
+    /// How long it is from its corner to the tip, L2.
+    Length2,
+    /// The angle between its pipes, γ.
+    Angle,
     /// The rod's connection to the flange or the clamp of the rig.
     Root,
     /// The bend between the rod's pipes.
@@ -187,6 +193,10 @@ pub enum Part {
     Base,
     /// All sensors of the rig.
     Sensors,
+    /// Where the rig's loads act on the rod.
+    LoadPoint,
+    /// Where the rig's sensors read the rod.
+    ReadPoint,
     /// The frame in which the rig's loads have their directions.
     LoadFrame,
 }
@@ -355,6 +365,9 @@ impl fmt::Display for Part {
             Part::Rod => "rod",
             Part::Pipe1 => "pipe 1",
             Part::Pipe2 => "pipe 2",
+            Part::Length1 => "length l1",
+            Part::Length2 => "length l2",
+            Part::Angle => "angle γ",
             Part::Root => "root",
             Part::Bend => "bend",
             Part::Slide => "slide",
@@ -366,6 +379,8 @@ impl fmt::Display for Part {
             Part::Arm => "arm",
             Part::Base => "base",
             Part::Sensors => "sensors",
+            Part::LoadPoint => "load point",
+            Part::ReadPoint => "read point",
             Part::LoadFrame => "load frame",
         })
     }

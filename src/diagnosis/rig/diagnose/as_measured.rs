@@ -78,6 +78,7 @@ impl RigModel {
             | Action::PerLoad
             | Action::Memory(..)
             | Action::Onset(_)
+            | Action::Varied(..)
             | Action::TurnSensor(..)
             | Action::TurnSensors(..) => true,
             Action::Stiffness

@@ -1,13 +1,13 @@
 //! All effects of a rig, in the order of preference among equals: the single source of names.
 
 use super::entry::RigEffect;
-use super::{display, events, history, load, mistakes, pipe, sensor, structure, zeros};
+use super::{dimension, display, events, history, load, mistakes, pipe, points, sensor, structure, zeros};
 use crate::diagnosis::rig::model::RigModel;
 use crate::inference::{Effect, Term, WrittenTo};
 use crate::rod::Rod;
 
 /// Every effect that the diagnosis of a rig knows.
-pub static ALL: [&RigEffect; 19] = [
+pub static ALL: [&RigEffect; 22] = [
     &load::FRICTION,
     &load::LOAD_OFFSET,
     &load::BACKLASH,
@@ -17,8 +17,11 @@ pub static ALL: [&RigEffect; 19] = [
     &structure::ROOT_COMPLIANCE,
     &structure::BEND_FLEXIBILITY,
     &pipe::PIPE_STIFFNESS,
+    &dimension::ROD_DIMENSION,
     &sensor::SENSOR_MISALIGNMENT,
     &load::LOAD_MISALIGNMENT,
+    &points::LOAD_POINT,
+    &points::SENSOR_POINT,
     &sensor::SENSOR_SCALE,
     &display::SENSOR_LAG,
     &history::NONLINEAR_STIFFNESS,

@@ -36,6 +36,9 @@ pub enum Action {
     JointIn(usize, usize),
     /// Where the joint of these numbers is, m \[its station\]; see [`Nodes`].
     Station(Nodes),
+    /// The number of the geometry that is the structure's variation of this number, m or rad \[that
+    /// of the file\]; of loads or sensors those along the axes of the mask.
+    Varied(usize, [bool; 3]),
     /// k₂, 1/N² \[0\].
     PerLoadSquared,
     /// k₁, 1/N \[0\].
@@ -122,6 +125,7 @@ impl Action {
                 | Action::Joint(..)
                 | Action::JointIn(..)
                 | Action::Station(_)
+                | Action::Varied(..)
                 | Action::PerLoad
                 | Action::PerLoadSquared
         )
@@ -151,6 +155,7 @@ impl Action {
             | Action::Joint(..)
             | Action::JointIn(..)
             | Action::Station(_)
+            | Action::Varied(..)
             | Action::PerLoadSquared
             | Action::PerLoad
             | Action::Memory(..)
@@ -177,6 +182,7 @@ impl Action {
             | Action::Joint(..)
             | Action::JointIn(..)
             | Action::Station(_)
+            | Action::Varied(..)
             | Action::PerLoadSquared
             | Action::PerLoad
             | Action::Memory(..)

@@ -28,7 +28,7 @@ use nalgebra::{Rotation3, Unit, Vector3};
 use super::action::{Action, Scope};
 use super::load_history::{Clock, History, Memory};
 use super::slide::{Course, Hung, Met, Slide};
-use super::structure::Softening;
+use super::structure::{Softening, Variant};
 use crate::diagnosis::rig::own_effect::law::OwnLaw;
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::spatial::Axis;
@@ -140,6 +140,9 @@ impl<'a> State<'a> {
             Action::Bend(of_file) => self.softening.bend += value - of_file,
             Action::Joint(joint, of_file) => self.softening.joints.push((*joint, value - of_file)),
             Action::JointIn(session, joint) => self.of_sessions.push((*session, *joint, value)),
+            Action::Varied(variation, axes) => {
+                self.softening.variants.push(Variant { variation: *variation, value, axes: *axes });
+            }
             Action::Station(nodes) => nodes.move_joint(&mut self.softening, value),
             Action::PerLoadSquared => self.per_load_squared += value,
             Action::PerLoad => self.per_load += value,

@@ -21,17 +21,22 @@
 //! J = Σ (a × (q − x))·(a × (p − x))ᵀ = [q − x]×·A·[p − x]×ᵀ     A = 1 − t·tᵀ of bending, t·tᵀ of torsion
 //! ```
 
+mod point;
 mod softening;
 #[cfg(test)]
 mod tests;
+mod variation;
 
 use nalgebra::{Matrix3, Vector3};
 
-pub use self::softening::{Nodes, Softening};
+pub use self::point::{Point, between};
+pub use self::softening::{Nodes, Softening, Variant};
+pub use self::variation::{End, Varied};
+use self::variation::{Variation, displaced};
 use crate::beam::{Physics, RodModel};
 use crate::error::{Error, Result};
 use crate::rig::readings::Readings;
-use crate::rod::{BendFlexibility, Pipe, Rod};
+use crate::rod::{BendFlexibility, Joint, Pipe, Rod};
 use crate::spatial::skew;
 use crate::units::{MM, UM};
 
@@ -52,8 +57,13 @@ pub struct Structure {
     pub bend_factor: f64,
     /// In the order in which they were added.
     joints: Vec<Hinge>,
-    pairs: Vec<(f64, f64)>,
+    /// Load and reading.
+    pairs: Vec<[Point; 2]>,
+    /// What else it would be with other lengths, or other points of loads and sensors.
+    variations: Vec<Variation>,
+    /// Without its joints.
     rod: Rod,
+    joints_of_file: Vec<Joint>,
 }
 
 /// How a joint gives way.
@@ -69,6 +79,8 @@ pub enum Deformation {
 #[derive(Debug, Clone)]
 struct Hinge {
     deformation: Deformation,
+    /// m from the flange.
+    station: f64,
     /// Per rad/(N·m).
     parts: Parts,
 }
@@ -76,25 +88,31 @@ struct Hinge {
 impl Structure {
     /// The parts of `rod` between pairs of load and read stations, m.
     pub fn new(rod: &Rod, pairs: Vec<(f64, f64)>) -> Result<Structure> {
+        let on_rod = |(load, read)| [load, read].map(|station| Point { station, arm: Vector3::zeros() });
+        Structure::between(rod, pairs.into_iter().map(on_rod).collect())
+    }
+
+    /// The parts of `rod` between pairs of points, of a load and of a reading.
+    fn between(rod: &Rod, pairs: Vec<[Point; 2]>) -> Result<Structure> {
         let without_joints = Rod { joints: Vec::new(), ..rod.clone() };
         let bend_factor = rod.bend_flexibility.factor(&rod.bend.section, rod.bend_radius);
-        let pipes = responses(&without_joints, &pairs)?;
+        let pipes = between(&without_joints, &pairs)?;
         // G twice as high halves what G is responsible for
-        let stiffer = responses(&with_moduli(&without_joints, 1.0, 2.0), &pairs)?;
+        let stiffer = between(&with_moduli(&without_joints, 1.0, 2.0), &pairs)?;
         // moduli twice as high halve what a pipe is responsible for
         let [first, second] =
-            WhichPipe::BOTH.map(|pipe| responses(&with_stiffer(&without_joints, pipe, 2.0), &pairs));
+            WhichPipe::BOTH.map(|pipe| between(&with_stiffer(&without_joints, pipe, 2.0), &pairs));
         let of_pipes = [first?, second?].map(|stiffer| difference(&pipes, &stiffer, 2.0));
         let arc = match rod.arc_length() > 0.0 {
             true => {
                 let flexible = BendFlexibility::Factor(bend_factor + 1.0);
                 let softer = Rod { bend_flexibility: flexible, ..without_joints.clone() };
-                Some(difference(&responses(&softer, &pairs)?, &pipes, 1.0))
+                Some(difference(&between(&softer, &pairs)?, &pipes, 1.0))
             }
             false => None,
         };
         Ok(Structure {
-            whole: responses(rod, &pairs)?,
+            whole: between(rod, &pairs)?,
             torsion_and_shear: difference(&pipes, &stiffer, 2.0),
             of_pipes,
             pipes,
@@ -103,28 +121,38 @@ impl Structure {
             bend_factor,
             joints: Vec::new(),
             pairs,
+            variations: Vec::new(),
             rod: without_joints,
+            joints_of_file: rod.joints.clone(),
         })
     }
 
     /// Adds a joint of no compliance yet at a station (m); its numbers for bending and for torsion.
     pub fn add_joint(&mut self, station: f64) -> [usize; 2] {
         let first = self.joints.len();
-        let (at, tangent) = (self.rod.point(station), tangent(&self.rod, station));
-        let along = tangent * tangent.transpose();
-        let bending = (Deformation::Bending, Matrix3::identity() - along);
-        for (deformation, axes) in [bending, (Deformation::Torsion, along)] {
-            let of_pair = |&(load, read): &(f64, f64)| match station <= load.min(read) {
-                true => {
-                    let lever = |station| skew(&(self.rod.point(station) - at));
-                    lever(read) * axes * lever(load).transpose()
-                }
-                false => Matrix3::zeros(),
-            };
-            let parts = self.pairs.iter().map(of_pair).collect();
-            self.joints.push(Hinge { deformation, parts });
+        for deformation in [Deformation::Bending, Deformation::Torsion] {
+            let parts = self.hinge(station, deformation);
+            self.joints.push(Hinge { deformation, station, parts });
         }
         [first, first + 1]
+    }
+
+    /// What a joint at a station that gives way so adds per rad/(N·m), J.
+    fn hinge(&self, station: f64, deformation: Deformation) -> Parts {
+        let (at, tangent) = (self.rod.point(station), tangent(&self.rod, station));
+        let along = tangent * tangent.transpose();
+        let axes = match deformation {
+            Deformation::Bending => Matrix3::identity() - along,
+            Deformation::Torsion => along,
+        };
+        let of_pair = |[load, read]: &[Point; 2]| match station <= load.station.min(read.station) {
+            true => {
+                let lever = |point: &Point| skew(&(point.on(&self.rod) - at));
+                lever(read) * axes * lever(load).transpose()
+            }
+            false => Matrix3::zeros(),
+        };
+        self.pairs.iter().map(of_pair).collect()
     }
 
     /// Adds joints by which the one at `station`, added as `joint`, may be moved within `range`
@@ -133,7 +161,7 @@ impl Structure {
     pub fn add_nodes(&mut self, station: f64, joint: [usize; 2], range: (f64, f64)) -> Option<Nodes> {
         const LEAST: f64 = 0.01 * MM;
         let ends = [0.0, self.rod.bend_start(), self.rod.bend_end(), self.rod.length()];
-        let kinks = self.pairs.iter().flat_map(|&(load, read)| [load, read]).chain(ends);
+        let kinks = self.pairs.iter().flatten().map(|point| point.station).chain(ends);
         let (before, behind) = kinks.fold(range, |(before, behind), kink| match kink <= station {
             true => (before.max(kink), behind),
             false => (before, behind.min(kink)),
@@ -164,9 +192,9 @@ impl Structure {
             let [bending, torsion] = stiffness(rod, station);
             let flexibility =
                 ((Matrix3::identity() - along) / bending + along / torsion) * (share(station) * step);
-            for (part, &(load, read)) in parts.iter_mut().zip(&self.pairs) {
-                if station <= load.min(read) {
-                    let lever = |station| skew(&(rod.point(station) - at));
+            for (part, [load, read]) in parts.iter_mut().zip(&self.pairs) {
+                if station <= load.station.min(read.station) {
+                    let lever = |point: &Point| skew(&(point.on(rod) - at));
                     *part += lever(read) * flexibility * lever(load).transpose();
                 }
             }
@@ -192,7 +220,48 @@ impl Structure {
             }
             whole
         };
-        (0..self.whole.len()).map(of_pair).collect()
+        let parts: Parts = (0..self.whole.len()).map(of_pair).collect();
+        if softening.variants.is_empty() {
+            return parts;
+        }
+        let mut varied = parts.clone();
+        for variant in &softening.variants {
+            let variation = &self.variations[variant.variation];
+            let changes = variation.changes(self, &parts, softening, variant);
+            varied.iter_mut().zip(changes).for_each(|(own, change)| *own += change);
+        }
+        varied
+    }
+
+    /// Adds what else the structure would be at values up to `most` from that of its file; the
+    /// number of the variation, or `None` where the beam model refuses a rod. What is there already
+    /// is not added again.
+    pub fn add_variation(&mut self, varied: Varied, most: f64) -> Option<usize> {
+        if let Some(known) = self.variations.iter().position(|known| known.varied == varied) {
+            return Some(known);
+        }
+        let of_file = Rod { joints: self.joints_of_file.clone(), ..self.rod.clone() };
+        self.variations.push(Variation::new(&of_file, &self.pairs, varied, most)?);
+        Some(self.variations.len() - 1)
+    }
+
+    /// Its pairs of points on another rod.
+    pub fn pairs_on(&self, other: &Rod) -> Vec<[Point; 2]> {
+        let on_other = |pair: &[Point; 2]| pair.each_ref().map(|point| point.moved(&self.rod, other));
+        self.pairs.iter().map(on_other).collect()
+    }
+
+    /// Its pairs of points, where loads or sensors of a station are at another point.
+    pub fn with_point(&self, end: End, station: f64, at: Point) -> Vec<[Point; 2]> {
+        displaced(&self.pairs, end, station, |point| *point = at)
+    }
+
+    /// Where loads act, or sensors read, m from the flange: each station once, from there on.
+    pub fn stations_of(&self, end: End) -> Vec<f64> {
+        let mut stations: Vec<f64> = self.pairs.iter().map(|pair| pair[end as usize].station).collect();
+        stations.sort_by(f64::total_cmp);
+        stations.dedup();
+        stations
     }
 
     /// How the joint of this number gives way.
@@ -206,11 +275,12 @@ impl Structure {
     pub fn second_order(&self, rod: &Rod) -> Result<Parts> {
         /// Enough for three digits.
         const ELEMENTS: usize = 48;
-        let stations: Vec<f64> = self.pairs.iter().flat_map(|&(load, read)| [load, read]).collect();
-        let model = RodModel::new(rod, &Physics::WHOLE, ELEMENTS, &stations)?;
+        let pairs: Vec<[f64; 2]> =
+            self.pairs_on(rod).iter().map(|pair| pair.each_ref().map(|point| point.station)).collect();
+        let model = RodModel::new(rod, &Physics::WHOLE, ELEMENTS, pairs.as_flattened())?;
         let mut known: Vec<(f64, [Vec<nalgebra::Vector3<f64>>; 3])> = Vec::new();
         let mut parts = Vec::new();
-        for &(load, read) in &self.pairs {
+        for [load, read] in pairs {
             if !known.iter().any(|(station, _)| *station == load) {
                 let along = |axis: usize| model.second_order(model.node_at(load), axis, 1.0);
                 known.push((load, [along(0)?, along(1)?, along(2)?]));
@@ -270,7 +340,7 @@ pub fn responses(rod: &Rod, pairs: &[(f64, f64)]) -> Result<Parts> {
 }
 
 /// Direction of the undeformed centreline at a station, in {T}: that before a corner.
-fn tangent(rod: &Rod, station: f64) -> Vector3<f64> {
+pub fn tangent(rod: &Rod, station: f64) -> Vector3<f64> {
     if station <= rod.bend_start() {
         return Vector3::z();
     }

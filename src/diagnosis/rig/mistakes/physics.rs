@@ -6,21 +6,22 @@
 //! ```
 //!
 //! Columns: stiffness, shear, joints along the rod, one axis' loads, one channel, loads and sensors
-//! turned; `own` is each line's own. How large they may be is a [`MOODS`] entry: as files are, some
+//! turned; by themselves the points of loads and sensors; `own` is each line's own. How large they may be is a [`MOODS`] entry: as files are, some
 //! times that, much, and, one after another, one thing far off with the rest as files are.
 //! Everything is relative to the rod, so that units do not matter, and the density is that of the
 //! slopes as recorded, so that no rescaling is favoured.
 
 mod mood;
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3, Vector3};
 
 use self::mood::{MOODS, Mood};
 use super::lines::Line;
-use crate::diagnosis::rig::mechanics::structure::{Softening, Structure};
+use crate::diagnosis::rig::mechanics::structure::{End, Point, Softening, Structure, between};
 use crate::error::Result;
-use crate::rod::Rod;
+use crate::rod::{NominalNumber, Rod};
 use crate::spatial::Axis;
+use crate::units::DEG;
 
 /// One thing far off, each as likely.
 const SINGLE: f64 = -5.0;
@@ -31,6 +32,11 @@ const SINGLE_SHEAR: f64 = 1.0;
 const SINGLE_AXIS: f64 = 0.3;
 const SINGLE_CHANNEL: f64 = 0.3;
 const SINGLE_TURN: f64 = 0.09;
+/// A point of loads or sensors, as a share of the rod's length; of so many stations at most.
+const SINGLE_POINT: f64 = 0.05;
+const MOST_POINTS: usize = 12;
+/// The angle between the pipes, rad.
+const SINGLE_ANGLE: f64 = 5.0 * DEG;
 
 /// Lines have one factor in common where that of so large a share of them differs by less than ln
 /// 2.
@@ -53,6 +59,8 @@ pub(super) struct Physics {
     /// Softer joints along the rod, each in bending and in torsion, by the whole rod's own
     /// flexibility.
     joints: Vec<Vec<Matrix3<f64>>>,
+    /// Loads or sensors of one station that are elsewhere: along the rod, and beside it.
+    points: Vec<Vec<Matrix3<f64>>>,
 }
 
 impl Physics {
@@ -73,6 +81,7 @@ impl Physics {
             joints.extend(structure.add_joint(place).into_iter().zip(rotation));
         }
         let whole = structure.softened(&Softening::default());
+        let points = points(rod, &structure, &whole)?;
         let more = |softening: Softening| -> Vec<Matrix3<f64>> {
             structure.softened(&softening).iter().zip(&whole).map(|(soft, whole)| soft - whole).collect()
         };
@@ -81,6 +90,7 @@ impl Physics {
             .map(|joint| more(Softening { joints: vec![joint], ..Softening::default() }))
             .collect();
         Ok(Physics {
+            points,
             shear: more(Softening { shear: 0.5, ..Softening::default() }),
             compliance: whole,
             joints,
@@ -91,6 +101,35 @@ impl Physics {
     pub fn compliance(&self, pair: usize) -> &Matrix3<f64> {
         &self.compliance[pair]
     }
+}
+
+/// By how much the compliance changes with each length and the angle of the rod, and where loads act,
+/// or sensors read, at another point: of each station, nearer to the flange and beside the rod.
+fn points(rod: &Rod, structure: &Structure, whole: &[Matrix3<f64>]) -> Result<Vec<Vec<Matrix3<f64>>>> {
+    let size = SINGLE_POINT * rod.length();
+    let less = |moved: Vec<Matrix3<f64>>| moved.iter().zip(whole).map(|(own, whole)| own - whole).collect();
+    let mut points = Vec::new();
+    for (number, value) in [
+        (NominalNumber::LengthL1, rod.l1 * (1.0 + SINGLE_POINT)),
+        (NominalNumber::LengthL2, rod.l2 * (1.0 + SINGLE_POINT)),
+        (NominalNumber::Angle, rod.gamma - SINGLE_ANGLE),
+    ] {
+        let other = rod.with(&number, value);
+        // a rod that cannot be is no rival
+        if let Ok(moved) = between(&other, &structure.pairs_on(&other)) {
+            points.push(less(moved));
+        }
+    }
+    for end in [End::Load, End::Reading] {
+        for station in structure.stations_of(end).into_iter().take(MOST_POINTS) {
+            let nearer = Point { station: (station - size).max(0.0), arm: Vector3::zeros() };
+            let beside = Axis::ALL.map(|axis| Point { station, arm: Vector3::ith(axis.index(), size) });
+            for point in beside.into_iter().chain([nearer]) {
+                points.push(less(between(rod, &structure.with_point(end, station, point))?));
+            }
+        }
+    }
+    Ok(points)
 }
 
 /// What a line of the file really is: channel m under loads along n, times G.
@@ -253,6 +292,8 @@ impl Seen<'_> {
         let shear = column(&|k| self.slope(k, &self.physics.shear));
         let joints: Vec<_> =
             self.physics.joints.iter().map(|joint| column(&|k| self.slope(k, joint))).collect();
+        let points: Vec<_> =
+            self.physics.points.iter().map(|point| column(&|k| self.slope(k, point))).collect();
         let axes: Vec<_> = Axis::ALL.map(|axis| part(&|view| view.axis == axis)).into();
         let channels: Vec<_> = Axis::ALL.map(|channel| part(&|view| view.channel == channel)).into();
         let squares = |columns: &[DVector<f64>]| {
@@ -267,6 +308,7 @@ impl Seen<'_> {
         Columns {
             shear,
             joints,
+            points,
             axes,
             channels,
             turns,
@@ -333,6 +375,7 @@ impl Seen<'_> {
         columns.axes.iter().for_each(|axis| single(axis, SINGLE_AXIS, SINGLE, false));
         columns.channels.iter().for_each(|channel| single(channel, SINGLE_CHANNEL, SINGLE, false));
         columns.turns.iter().for_each(|turn| single(turn, SINGLE_TURN, SINGLE, false));
+        columns.points.iter().for_each(|point| single(point, 1.0, SINGLE, false));
         terms
     }
 }
@@ -340,6 +383,7 @@ impl Seen<'_> {
 struct Columns {
     shear: DVector<f64>,
     joints: Vec<DVector<f64>>,
+    points: Vec<DVector<f64>>,
     axes: Vec<DVector<f64>>,
     channels: Vec<DVector<f64>>,
     turns: Vec<DVector<f64>>,

@@ -243,6 +243,7 @@ fn no_physics_is_a_mistake_however_large(bench: Bench) {
                     let value = match (candidate.effect.name, p.name.as_str()) {
                         ("stiffness_scale", _) => value.clamp(0.3, 2.5),
                         (_, "angle_deg") => value.clamp(-0.1, 0.1),
+                        (_, "gamma_deg") => value.clamp(p.neutral - 0.1, p.neutral + 0.1),
                         _ => value,
                     };
                     value.clamp(p.bounds.0, p.bounds.1)

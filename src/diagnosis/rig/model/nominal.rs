@@ -6,6 +6,7 @@
 //! load     u·C·F           all loads by one scale
 //! sensor   u·C·F           of one channel
 //! station  u·∂(C·F)/∂s     every stated station of a load or of a sensor
+//! load     u·∂(C·F)/∂s     of loads whose station no row states: they may not hang at the tip itself
 //! clamp    as l1: a clamp that is farther out leaves a shorter rod
 //! ```
 
@@ -31,6 +32,8 @@ pub enum KnownNumber {
     SensorScale(Axis),
     /// A station that the readings state, m.
     Station(f64),
+    /// Where loads act whose station the readings do not state.
+    LoadPoint,
     /// A constant of a law of the rod's file: numbers of both.
     LawConstant(usize, usize),
 }
@@ -103,12 +106,22 @@ pub fn all(
         add(KnownNumber::SensorScale(channel), parameter, column);
     }
     let length = rod.standard_uncertainty.length;
+    let along = |name: String, value: f64| NominalParameter {
+        name,
+        unit: "mm",
+        si: MM,
+        value,
+        standard_uncertainty: length,
+    };
     for station in pairs.stated(data) {
-        let Some(column) = pairs.moved(data, bent, station, length) else { continue };
-        let name = format!("station {:.1} mm", station / MM);
-        let (unit, si) = ("mm", MM);
-        let parameter = NominalParameter { name, unit, si, value: station, standard_uncertainty: length };
+        let Some(column) = pairs.moved(data, bent, [station; 2], length) else { continue };
+        let parameter = along(format!("station {:.1} mm", station / MM), station);
         add(KnownNumber::Station(station), parameter, column);
+    }
+    if data.iter().any(|d| d.load_station.is_none())
+        && let Some(column) = pairs.moved(data, bent, [bent.length(), f64::NAN], length)
+    {
+        add(KnownNumber::LoadPoint, along("load point".into(), bent.length()), column);
     }
     let columns = DMatrix::from_fn(data.len(), columns.len(), |i, k| columns[k][i]);
     Ok(KnownNumbers { known, parameters, columns, deflections })
@@ -165,16 +178,26 @@ impl<'a> Pairs<'a> {
         stations
     }
 
-    /// The column of a station that is off by its standard uncertainty.
-    fn moved(&self, data: &[Datum], rod: &Rod, station: f64, by: f64) -> Option<Vec<f64>> {
-        let at = |sign: f64| {
-            let moved = |s: f64| if s == station { (s + sign * by).clamp(0.0, rod.length()) } else { s };
-            let pairs: Vec<(f64, f64)> =
-                self.on(rod).into_iter().map(|(load, read)| (moved(load), moved(read))).collect();
+    /// The column of loads at the first of these stations and of sensors at the second that are `by`
+    /// (m) farther from the flange. Beyond the tip there is no rod: there its other side counts twice.
+    fn moved(&self, data: &[Datum], rod: &Rod, stations: [f64; 2], by: f64) -> Option<Vec<f64>> {
+        let tip = rod.length();
+        let move_by = |station: f64, own: f64, shift: f64| match station == own {
+            true => (station + shift).clamp(0.0, tip),
+            false => station,
+        };
+        let at = |shift: f64| {
+            let pairs: Vec<(f64, f64)> = self
+                .on(rod)
+                .into_iter()
+                .map(|(load, read)| (move_by(load, stations[0], shift), move_by(read, stations[1], shift)))
+                .collect();
             Some(self.read(data, &responses(rod, &pairs).ok()?))
         };
-        let (more, less) = (at(1.0)?, at(-1.0)?);
-        Some(more.iter().zip(&less).map(|(more, less)| 0.5 * (more - less)).collect())
+        let own = stations[0];
+        let span = move_by(own, own, by) - move_by(own, own, -by);
+        let (more, less) = (at(by)?, at(-by)?);
+        Some(more.iter().zip(&less).map(|(more, less)| by / span * (more - less)).collect())
     }
 }
 

@@ -71,6 +71,7 @@ impl RigModel {
             | Action::ShearModulus
             | Action::Bend(_)
             | Action::JointIn(..)
+            | Action::Varied(..)
             | Action::PerLoadSquared
             | Action::PerLoad
             | Action::Memory(..)

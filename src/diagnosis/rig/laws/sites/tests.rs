@@ -56,7 +56,7 @@ fn up_and_down() -> (Readings, Rod) {
 }
 
 /// What the effects of the library are in the grammar.
-const POINTS: [(&str, &str, &str, Form, bool); 17] = [
+const POINTS: [(&str, &str, &str, Form, bool); 19] = [
     ("stiffness_scale", "rod", "load", Form::Polynomial(1), false),
     ("nonlinear_stiffness", "rod", "load", Form::Polynomial(2), false),
     ("nonlinear_stiffness", "rod", "load", Form::Polynomial(3), false),
@@ -72,14 +72,23 @@ const POINTS: [(&str, &str, &str, Form, bool); 17] = [
     ("sensor_scale", "dx", "reading", Form::Polynomial(1), false),
     ("sensor_scale", "dy", "reading", Form::Polynomial(1), false),
     ("sensor_scale", "dz", "reading", Form::Polynomial(1), false),
+    // under loads along y that is all that is displaced: elsewhere axes share it
+    ("load_point", "dy", "reading", Form::Polynomial(1), false),
+    ("sensor_point", "dy", "reading", Form::Polynomial(1), false),
     ("thermal_drift", "sensors", "temperature above the lowest", Form::Polynomial(1), false),
     ("slip", "sensors", "number of readings before", Form::Step, false),
 ];
 
 /// What the others say that no function of one variable at one place does: how a load or a
 /// displacement is shared among axes, or the compliance along the rod.
-const NO_POINTS: [&str; 5] =
-    ["load_misalignment", "sensor_misalignment", "shear_modulus", "bend_flexibility", "pipe_stiffness"];
+const NO_POINTS: [&str; 6] = [
+    "load_misalignment",
+    "sensor_misalignment",
+    "shear_modulus",
+    "bend_flexibility",
+    "pipe_stiffness",
+    "rod_dimension",
+];
 
 /// Existing effects are points of the grammar: what they do to the data is what a law does. Those
 /// that are none are listed, and are none.

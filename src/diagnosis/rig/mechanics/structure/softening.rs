@@ -1,5 +1,5 @@
 //! What is wrong with a structure: moduli, those of one pipe, the bend, joints, and where these
-//! are.
+//! are, numbers of the geometry.
 
 /// What is wrong with a structure.
 #[derive(Debug, Clone)]
@@ -14,11 +14,31 @@ pub struct Softening {
     pub bend: f64,
     /// Joints by number, with the change of their compliance, rad/(N·m).
     pub joints: Vec<(usize, f64)>,
+    /// Numbers of the geometry that are others.
+    pub variants: Vec<Variant>,
+}
+
+/// Another number of the geometry.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Variant {
+    /// The structure's variation.
+    pub variation: usize,
+    /// m or rad.
+    pub value: f64,
+    /// Loads or sensors along which axes are concerned.
+    pub axes: [bool; 3],
 }
 
 impl Default for Softening {
     fn default() -> Self {
-        Softening { stiffness: 1.0, pipes: [1.0; 2], shear: 1.0, bend: 0.0, joints: Vec::new() }
+        Softening {
+            stiffness: 1.0,
+            pipes: [1.0; 2],
+            shear: 1.0,
+            bend: 0.0,
+            joints: Vec::new(),
+            variants: Vec::new(),
+        }
     }
 }
 

@@ -5,11 +5,11 @@ use nalgebra::DVector;
 use super::written_item::WrittenItem;
 use crate::diagnosis::rig::model::RigModel;
 use crate::spatial::Direction;
-use crate::units::UM;
 
-/// Loads are written in multiples of this, N.
-const SMALLEST_LOAD: f64 = 1e-6;
-const NM: f64 = 1e-3 * UM;
+/// So many steps of what is written make a newton, and a metre: a nanometre is less than any sensor
+/// reads. A quotient of whole numbers is the number that its digits say.
+const STEPS_OF_LOAD: f64 = 1e6;
+const STEPS_OF_OFFSET: f64 = 1e9;
 
 /// The readings less `of_rig`, as a file.
 pub(super) fn without(
@@ -26,12 +26,11 @@ pub(super) fn without(
             let load = datum.signed_load() - change / imposed.per_newton;
             let sign = if load < 0.0 { -1 } else { 1 };
             row.direction = Direction { sign, ..row.direction };
-            row.load = (load.abs() / SMALLEST_LOAD).round() * SMALLEST_LOAD;
+            row.load = (load.abs() * STEPS_OF_LOAD).round() / STEPS_OF_LOAD;
             continue;
         }
         if let Some(offset) = &mut readings.rows[datum.row - 1].offset[datum.channel.index()] {
-            // a nanometre is less than any sensor reads
-            *offset = ((*offset - change) / NM).round() * NM;
+            *offset = ((*offset - change) * STEPS_OF_OFFSET).round() / STEPS_OF_OFFSET;
         }
     }
     let listed = |what: &str, list: &[String]| match list {

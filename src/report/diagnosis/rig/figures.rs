@@ -197,9 +197,9 @@ fn located(finding: &Finding, rod: &Rod) -> Option<Located> {
     let whole = |from: f64, to: f64| (0.5 * (from + to), Some(("the whole pipe", from, to)));
     let (at, stretch) = match &finding.location {
         Location::Part(Part::Root) | Location::InSession { part: Part::Root, .. } => (0.0, None),
-        Location::Part(Part::Pipe1) => whole(0.0, rod.bend_start()),
-        Location::Part(Part::Pipe2) => whole(rod.bend_end(), rod.length()),
-        Location::Part(Part::Bend) => (0.5 * (rod.bend_start() + rod.bend_end()), None),
+        Location::Part(Part::Pipe1 | Part::Length1) => whole(0.0, rod.bend_start()),
+        Location::Part(Part::Pipe2 | Part::Length2) => whole(rod.bend_end(), rod.length()),
+        Location::Part(Part::Bend | Part::Angle) => (0.5 * (rod.bend_start() + rod.bend_end()), None),
         Location::Station(at) => {
             let place = finding.place_estimate();
             (*at, place.map(|place| ("where it may be", place.low, place.high)))

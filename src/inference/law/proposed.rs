@@ -70,6 +70,8 @@ pub struct Law {
     pub noise: f64,
     /// What it adds to each datum, m.
     pub adds: Vec<f64>,
+    /// What is left of each datum beside it, m.
+    pub left: Vec<f64>,
     /// All else, as it is beside it.
     pub beside: Beside,
     /// Laws that these data do not distinguish from it, the likeliest first.
@@ -171,12 +173,17 @@ impl Proposed {
 
 impl Law {
     /// True where place, variable, form and memory are those of another law, and so is what it
-    /// adds, but for a factor. Waves of two frequencies are two laws.
+    /// adds, but for a factor. Waves of two frequencies are two laws, and so are lags of two times
+    /// that are known apart.
     pub fn repeats(&self, other: &Law) -> bool {
         let [a, b] = [self, other].map(|law| DVector::from_column_slice(&law.adds));
+        let is_apart = |(a, b): (&Constant, &Constant)| a.high < b.low || b.high < a.low;
+        let constants = [self, other].map(|law| law.constant.as_ref().map(|(_, constant)| constant));
+        let are_two = self.memory.has_constant() && constants[0].zip(constants[1]).is_some_and(is_apart);
         (&self.site.location, &self.site.variable, &self.site.result)
             == (&other.site.location, &other.site.variable, &other.site.result)
             && (self.form, &self.memory) == (other.form, &other.memory)
+            && !are_two
             && a.dot(&b).abs() > SAME * a.norm() * b.norm()
     }
 
@@ -202,6 +209,7 @@ impl Law {
             explains: 0.0,
             noise: 0.0,
             adds: Vec::new(),
+            left: Vec::new(),
             beside: Beside::default(),
             rivals: Vec::new(),
             next: None,

@@ -41,7 +41,16 @@ impl Choice {
                 let is_of = match memory {
                     // of what has one sign only a level is a zero
                     Memory::None => form != Form::Settling || site.range().0 < 0.0,
-                    Memory::Side => !matches!(form, Form::PowerAfterGap | Form::Threshold | Form::Harmonic),
+                    Memory::Side => !matches!(
+                        form,
+                        Form::PowerAfterGap
+                            | Form::Rounded
+                            | Form::Threshold
+                            | Form::Harmonic
+                            | Form::Pull
+                            | Form::PullBelow
+                            | Form::PullAbove
+                    ),
                     Memory::Stop | Memory::BoucWen(_) | Memory::Lag | Memory::Lagged => {
                         form == Form::Polynomial(1)
                     }

@@ -74,9 +74,9 @@ pub(super) fn left_beside(
     let second = Alone { class: &class, held_out: &folds.own, curve };
     let is_enough = |both: &Both| law.log_odds > first.curve || !both.is_more_left(known, &sites_with);
     match together(known, [first, &second], &beside, &sites_with, is_enough) {
-        Some([mut one, other]) => {
+        Some(([mut one, other], log_odds)) => {
             // together they are so much likelier than the curve that draws both
-            one.log_odds.1 = law.log_odds + other.log_odds.0 - first.curve;
+            one.log_odds.1 = log_odds - first.curve;
             let (first, law) = (one, other);
             Left::Laws(Box::new(first), Box::new(Second { law, held_out: (folds.without, folds.with) }))
         }
@@ -94,27 +94,28 @@ pub(super) fn gain_beside(data: &Data, law: &DMatrix<f64>, curve: &DMatrix<f64>)
 /// Columns of two laws.
 struct Both([DMatrix<f64>; 2]);
 
-/// Two laws, each as it is beside the other; `None` where they are not `enough`. Beside the other a
-/// law may have another form: all are tried once more.
+/// Two laws, each as it is beside the other, and their ln odds against nothing; `None` where they
+/// are not `enough`. Beside the other a law may have another form: all are tried once more.
 fn together(
     known: &Known,
     alone: [&Alone; 2],
     beside: &[Site],
     sites_with: &dyn Fn(&DVector<f64>) -> Vec<Site>,
     enough: impl Fn(&Both) -> bool,
-) -> Option<[Law; 2]> {
+) -> Option<([Law; 2], f64)> {
     let laws = [*alone[0].class.first()?, *alone[1].class.first()?];
     let mut both = Both([columns(known, laws[0], known.sites), columns(known, laws[1], beside)]);
     let mut tried: [Option<Vec<Choice>>; 2] = [None, None];
+    let mut prices = laws.map(|law| law.price);
     for _ in 0..ROUNDS {
         for free in [0, 1] {
-            let (choices, columns) =
+            let (choices, columns, price) =
                 both.beside(known, free, tried[free].as_deref(), sites_with, |known, found| {
                     let best = found.laws.first()?;
                     let choices = alike(found, best).iter().map(|law| law.choice).collect();
-                    Some((choices, columns(known, best, known.sites)))
+                    Some((choices, columns(known, best, known.sites), best.price))
                 })?;
-            both.0[free] = columns;
+            (both.0[free], prices[free]) = (columns, price);
             tried[free].get_or_insert(choices);
         }
     }
@@ -134,7 +135,8 @@ fn together(
         })
     };
     let [one, other] = [described(0)?, described(1)?];
-    (!other.repeats(&one)).then_some([one, other])
+    let log_odds = known.remainder.fit(&both.side_by_side()).gain - prices.iter().sum::<f64>();
+    (!other.repeats(&one)).then_some(([one, other], log_odds))
 }
 
 impl Both {
@@ -160,13 +162,15 @@ impl Both {
         then(&beside, &found)
     }
 
+    fn side_by_side(&self) -> DMatrix<f64> {
+        beside_each_other(&self.0[0], &self.0[1])
+    }
+
     /// What each adds to each datum.
     fn adds(&self, known: &Known) -> [DVector<f64>; 2] {
         let [one, other] = &self.0;
         let (count, more) = (one.ncols(), other.ncols());
-        let mut side_by_side = one.clone().resize_horizontally(count + more, 0.0);
-        side_by_side.columns_mut(count, more).copy_from(other);
-        let factors = known.remainder.fit(&side_by_side).factors;
+        let factors = known.remainder.fit(&self.side_by_side()).factors;
         [one * factors.rows(0, count), other * factors.rows(count, more)]
     }
 
@@ -189,15 +193,19 @@ fn columns(known: &Known, law: &Scanned, sites: &[Site]) -> DMatrix<f64> {
     law.choice.columns(&sites[law.choice.site], law.at, WIDE * known.data.size).columns
 }
 
+/// Columns of one and then of the other.
+pub(super) fn beside_each_other(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
+    let (count, more) = (one.ncols(), other.ncols());
+    let mut both = one.clone().resize_horizontally(count + more, 0.0);
+    both.columns_mut(count, more).copy_from(other);
+    both
+}
+
 fn rows(evidence: &Evidence) -> Vec<usize> {
     (0..evidence.residual.len()).collect()
 }
 
 /// An evidence in which columns stand among what else may be there, their amplitudes free.
 fn with_columns(evidence: &Evidence, columns: &DMatrix<f64>) -> Evidence {
-    let known = evidence.background.ncols();
-    let mut background = DMatrix::zeros(columns.nrows(), known + columns.ncols());
-    background.columns_mut(0, known).copy_from(&evidence.background);
-    background.columns_mut(known, columns.ncols()).copy_from(columns);
-    Evidence { background, ..evidence.clone() }
+    Evidence { background: beside_each_other(&evidence.background, columns), ..evidence.clone() }
 }

@@ -6,9 +6,10 @@ use super::choice::Choice;
 use super::described::{Data, Known, alike, described};
 use super::folds::{WORTH, hold_out};
 use super::left::{Alone, Left, gain_beside, left_beside};
+use super::pairs::beginning;
 use super::proposed::{Law, Proposed, Refusal};
 use super::remainder::Remainder;
-use super::scan::{prior, refit, scan, scan_as_predicted};
+use super::scan::{Scanned, prior, refit, scan, scan_as_predicted};
 use super::site::Site;
 use crate::inference::model::evidence::rms;
 use crate::inference::noise::scatter::weighted;
@@ -97,15 +98,27 @@ pub fn propose(
     }
     let known = Known { data, sites: &all, remainder: &remainder, background: evidence.background.ncols() };
     let is_lower = folds.is_lower(folds.with) && folds.is_lower(folds.own[0]);
-    let alone = Alone { class: &class, held_out: &folds.own, curve: curve_odds };
-    let left = match behind <= 0.0 || is_lower {
+    let pair = (behind > 0.0).then(|| beginning(&known, &found, curve_odds)).flatten();
+    let class_of_pair: Vec<&Scanned> = pair.iter().collect();
+    let alone = match pair.is_some() {
+        true => Alone { class: &class_of_pair, held_out: &[], curve: curve_odds },
+        false => Alone { class: &class, held_out: &folds.own, curve: curve_odds },
+    };
+    let left = match behind <= 0.0 || is_lower || pair.is_some() {
         true => left_beside(&known, &alone, |own| sites(&(&change + own))),
         false => Left::Nothing,
     };
     let more = match left {
-        Left::Laws(first, second) if first.log_odds.1 > if behind > 0.0 { NAMED.ln() } else { 0.0 } => {
+        Left::Laws(first, second)
+            if first.log_odds.1 > if behind > 0.0 { NAMED.ln() } else { 0.0 }
+                && (is_lower || folds.is_lower(second.held_out.1)) =>
+        {
+            let held_out = match pair.is_some() {
+                true => Some((folds.without, second.held_out.1)),
+                false => errors,
+            };
             let law = Law { second: Some(second), ..*first };
-            return Some(Proposed { law: Ok(law), lives, held_out: errors });
+            return Some(Proposed { law: Ok(law), lives, held_out });
         }
         _ if behind > 0.0 => return refused(Refusal::Curve(behind), None),
         Left::Nothing => None,

@@ -28,6 +28,7 @@ fn site(_: &DVector<f64>) -> Vec<Site> {
         moves: vec![1.0; COUNT],
         courses: Vec::new(),
         forms: &Form::ALL,
+        rare: &[],
     }]
 }
 

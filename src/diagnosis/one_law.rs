@@ -128,3 +128,20 @@ fn numbers_of(law: &Law) -> usize {
     let own = law.amplitudes.len() + usize::from(law.constant.is_some()) + law.of_loop.len();
     own + law.second.as_ref().map_or(0, |second| numbers_of(&second.law))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two runs of three readings, each with a zero of its own: what is left is what differs within.
+    #[test]
+    fn a_zero_of_a_run_makes_nothing_likelier() {
+        let shared = vec![0, 0, 0, 1, 1, 1];
+        let own = DVector::from_vec(vec![1.0, -1.0, 0.5, 0.2, -0.4, 0.1]);
+        let evidence = Evidence { shared, ..Evidence::new(own.clone()) };
+        let zeroed = DVector::from_vec(vec![8.0, 6.0, 7.5, -3.8, -4.4, -3.9]);
+        assert!(likelier(&evidence, &own, &zeroed).abs() < 1e-12);
+        // half as much is left, of 6 − 2 data
+        assert!((likelier(&evidence, &own, &(&zeroed * 0.5)) - 4.0 * 2.0f64.ln()).abs() < 1e-12);
+    }
+}

@@ -13,6 +13,14 @@ const POINTS: usize = 21;
 const SHARPNESSES: [f64; 3] = [1.0, 2.0, 5.0];
 const BALANCES: [f64; 2] = [0.55, 0.9];
 
+/// Columns of one and then of the other.
+pub(super) fn beside_each_other(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
+    let (count, more) = (one.ncols(), other.ncols());
+    let mut both = one.clone().resize_horizontally(count + more, 0.0);
+    both.columns_mut(count, more).copy_from(other);
+    both
+}
+
 /// One law among all.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Choice {

@@ -2,9 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::choice::Choice;
+use super::choice::{Choice, beside_each_other};
 use super::described::{Data, Known, alike, described};
 use super::folds::hold_out;
+use super::pairs::{Numbered, settle};
 use super::proposed::{Law, Second};
 use super::remainder::Remainder;
 use super::scan::{Scan, Scanned, refit, scan_as_predicted};
@@ -107,17 +108,27 @@ fn together(
     let mut both = Both([columns(known, laws[0], known.sites), columns(known, laws[1], beside)]);
     let mut tried: [Option<Vec<Choice>>; 2] = [None, None];
     let mut prices = laws.map(|law| law.price);
+    let mut numbered: [Option<Numbered>; 2] = [None, None];
     for _ in 0..ROUNDS {
         for free in [0, 1] {
-            let (choices, columns, price) =
+            let (choices, columns, price, own) =
                 both.beside(known, free, tried[free].as_deref(), sites_with, |known, found| {
                     let best = found.laws.first()?;
                     let choices = alike(found, best).iter().map(|law| law.choice).collect();
-                    Some((choices, columns(known, best, known.sites), best.price))
+                    let own = Numbered::new(best, &known.sites[best.choice.site]);
+                    Some((choices, columns(known, best, known.sites), best.price, own))
                 })?;
-            (both.0[free], prices[free]) = (columns, price);
+            (both.0[free], prices[free], numbered[free]) = (columns, price, own);
             tried[free].get_or_insert(choices);
         }
+    }
+    // what is alike in both is found by both together
+    let mut wider = 1.0;
+    if let [Some(a), Some(b)] = &mut numbered {
+        let size = WIDE * known.data.size;
+        let gains = |sets: &[DMatrix<f64>]| known.remainder.gains(sets.len(), |k| sets[k].clone());
+        wider = settle([a, b], &gains, size);
+        both = Both([a, b].map(|law| law.columns(0.0, size)));
     }
     if !enough(&both) {
         return None;
@@ -134,7 +145,9 @@ fn together(
             described(known, &class, &held_out, curve)
         })
     };
-    let [one, other] = [described(0)?, described(1)?];
+    let [mut one, mut other] = [described(0)?, described(1)?];
+    one.widen(wider);
+    other.widen(wider);
     let log_odds = known.remainder.fit(&both.side_by_side()).gain - prices.iter().sum::<f64>();
     (!other.repeats(&one)).then_some(([one, other], log_odds))
 }
@@ -191,14 +204,6 @@ impl Both {
 /// Columns of a law at its numbers.
 fn columns(known: &Known, law: &Scanned, sites: &[Site]) -> DMatrix<f64> {
     law.choice.columns(&sites[law.choice.site], law.at, WIDE * known.data.size).columns
-}
-
-/// Columns of one and then of the other.
-pub(super) fn beside_each_other(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
-    let (count, more) = (one.ncols(), other.ncols());
-    let mut both = one.clone().resize_horizontally(count + more, 0.0);
-    both.columns_mut(count, more).copy_from(other);
-    both
 }
 
 fn rows(evidence: &Evidence) -> Vec<usize> {

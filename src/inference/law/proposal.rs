@@ -9,7 +9,7 @@ use super::left::{Alone, Left, gain_beside, left_beside};
 use super::pairs::beginning;
 use super::proposed::{Law, Proposed, Refusal};
 use super::remainder::Remainder;
-use super::scan::{Scanned, prior, refit, scan, scan_as_predicted};
+use super::scan::{prior, refit, scan, scan_as_predicted};
 use super::site::Site;
 use crate::inference::model::evidence::rms;
 use crate::inference::noise::scatter::weighted;
@@ -93,32 +93,33 @@ pub fn propose(
     let folds = hold_out(&data, &all, (&choices, &tried));
     let Some(folds) = folds else { return refused(Refusal::NoFolds, None) };
     let errors = Some((folds.without, folds.with));
-    if behind <= 0.0 && !(folds.is_lower(folds.with) && folds.is_lower(folds.own[0])) {
+    let known = Known { data, sites: &all, remainder: &remainder, background: evidence.background.ncols() };
+    let beside = |alone: &Alone| left_beside(&known, alone, |own| sites(&(&change + own)));
+    // two laws of one memory make something together that neither is
+    let likeliest = curve_odds.max(best.log_odds);
+    if let Some(first) = beginning(&known, &found, likeliest + NAMED.ln()) {
+        let alone = Alone { class: &[&first], held_out: &[], curve: curve_odds };
+        if let Left::Laws(law, second) = beside(&alone) {
+            let is_likelier = law.log_odds.1 > likeliest - curve_odds + NAMED.ln();
+            let with = second.held_out.1;
+            if is_likelier && folds.is_lower(with) {
+                let (law, held_out) = (Law { second: Some(second), ..*law }, Some((folds.without, with)));
+                return Some(Proposed { law: Ok(law), lives, held_out });
+            }
+        }
+    }
+    let is_lower = folds.is_lower(folds.with) && folds.is_lower(folds.own[0]);
+    if behind <= 0.0 && !is_lower {
         return refused(Refusal::HeldOut, errors);
     }
-    let known = Known { data, sites: &all, remainder: &remainder, background: evidence.background.ncols() };
-    let is_lower = folds.is_lower(folds.with) && folds.is_lower(folds.own[0]);
-    let pair = (behind > 0.0).then(|| beginning(&known, &found, curve_odds)).flatten();
-    let class_of_pair: Vec<&Scanned> = pair.iter().collect();
-    let alone = match pair.is_some() {
-        true => Alone { class: &class_of_pair, held_out: &[], curve: curve_odds },
-        false => Alone { class: &class, held_out: &folds.own, curve: curve_odds },
-    };
-    let left = match behind <= 0.0 || is_lower || pair.is_some() {
-        true => left_beside(&known, &alone, |own| sites(&(&change + own))),
+    let left = match is_lower {
+        true => beside(&Alone { class: &class, held_out: &folds.own, curve: curve_odds }),
         false => Left::Nothing,
     };
     let more = match left {
-        Left::Laws(first, second)
-            if first.log_odds.1 > if behind > 0.0 { NAMED.ln() } else { 0.0 }
-                && (is_lower || folds.is_lower(second.held_out.1)) =>
-        {
-            let held_out = match pair.is_some() {
-                true => Some((folds.without, second.held_out.1)),
-                false => errors,
-            };
+        Left::Laws(first, second) if first.log_odds.1 > if behind > 0.0 { NAMED.ln() } else { 0.0 } => {
             let law = Law { second: Some(second), ..*first };
-            return Some(Proposed { law: Ok(law), lives, held_out });
+            return Some(Proposed { law: Ok(law), lives, held_out: errors });
         }
         _ if behind > 0.0 => return refused(Refusal::Curve(behind), None),
         Left::Nothing => None,

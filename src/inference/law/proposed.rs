@@ -187,6 +187,15 @@ impl Law {
             && a.dot(&b).abs() > SAME * a.norm() * b.norm()
     }
 
+    /// Its intervals by this factor as wide, about its numbers.
+    pub(super) fn widen(&mut self, factor: f64) {
+        let of_form = self.constant.iter_mut().map(|(_, constant)| constant);
+        for own in self.amplitudes.iter_mut().chain(of_form) {
+            own.low = own.value - factor * (own.value - own.low);
+            own.high = own.value + factor * (own.high - own.value);
+        }
+    }
+
     /// Of its numbers alone, for tests of what is made of them.
     #[cfg(test)]
     pub fn of_numbers(

@@ -12,8 +12,8 @@
 //!
 //! S the squares that each leaves of n data about the means of those that share a zero, ν of them
 //! free, z the numbers of the files that it needs (in standard uncertainties), k its own numbers
-//! (G. Schwarz, Ann. Statist. 6, 1978). Where a curve is needed beside the names, a law has to leave
-//! as little as both. Of three names or more, a curve counted as one, that it needs fewer numbers
+//! (G. Schwarz, Ann. Statist. 6, 1978). Where a curve is needed beside the names, it is one of them.
+//! Of three names or more, a curve counted as one, that it needs fewer numbers
 //! and leaves as little is enough. A law that is likelier by less is said beside the names.
 
 use std::collections::BTreeMap;
@@ -56,7 +56,8 @@ pub(super) fn names(named: &Diagnosis) -> Vec<&Finding> {
 /// A law that was `proposed` for the same data without names, compared with those of `named`.
 pub(super) fn compared(proposed: &Proposed, without: &Diagnosis, named: &Diagnosis) -> Option<Instead> {
     let (law, names) = (proposed.law.as_ref().ok()?, names(named));
-    let has_curve = named.discrepancy.as_ref().is_some_and(|left| left.shown_by == ShownBy::Curve);
+    let curve = named.discrepancy.as_ref().filter(|left| left.shown_by == ShownBy::Curve);
+    let has_curve = curve.is_some();
     let of_names = names.iter().map(|finding| finding.estimates.len()).sum::<usize>();
     let numbers = of_names + if has_curve { OF_CURVE } else { 0 };
     // what numbers of the files are then, as Σ z²
@@ -66,8 +67,9 @@ pub(super) fn compared(proposed: &Proposed, without: &Diagnosis, named: &Diagnos
     let farther = square(&law.beside.background) - square(named.hypothesis.background.as_slice());
     let count = without.settled.0.residual.len() as f64;
     let more_numbers = numbers_of(law) as f64 - numbers as f64;
-    let leaves_less = likelier(&without.settled.0, &named.after, &DVector::from_column_slice(&law.left));
-    let log_odds = leaves_less - 0.5 * farther - 0.5 * more_numbers * count.ln();
+    let beside_names = curve.map_or_else(|| named.after.clone(), |curve| &named.after - &curve.shape);
+    let leaves_less = likelier(&without.settled.0, &beside_names, &DVector::from_column_slice(&law.left));
+    let log_odds = odds(leaves_less, farther, more_numbers, count);
     // both searches are repeated without each fold
     let own = law.held_out.into_iter().chain(proposed.held_out.map(|(_, with)| with));
     let (own, after) = (own.reduce(f64::max)?, named.held_out.as_ref()?.after);
@@ -80,12 +82,17 @@ pub(super) fn compared(proposed: &Proposed, without: &Diagnosis, named: &Diagnos
     let mut causes: Vec<&str> = names.iter().map(|finding| finding.effect.cause).collect();
     causes.dedup();
     // of two laws at once many are as likely as a name by chance
-    let is_one = law.second.is_none() && (is_as_little || !has_curve);
+    let is_one = law.second.is_none();
     match is_simpler || (is_one && log_odds > NAMED.ln()) {
         true => Some(Instead::Law(Limitation::NamesForLaw(causes.join(", "), of_names))),
         false => (is_one && log_odds.min(leaves_less) > 0.0)
             .then(|| Instead::Rival(Limitation::LawForNames(description(law)))),
     }
+}
+
+/// ln B of the law against the names.
+fn odds(leaves_less: f64, farther: f64, more_numbers: f64, count: f64) -> f64 {
+    leaves_less - 0.5 * farther - 0.5 * more_numbers * count.ln()
 }
 
 /// ½·ν·ln(S_one/S_other): what data are likelier, at the best noise each, where `other` is left of
@@ -132,6 +139,13 @@ fn numbers_of(law: &Law) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A law that leaves as much with one number more is no better than a name, and one whose
+    /// numbers of the files are three standard uncertainties nearer is.
+    #[test]
+    fn a_number_has_its_price() {
+        assert!(odds(0.0, 0.0, 1.0, 60.0) < -2.0 && odds(0.0, -9.0, 0.0, 60.0) > NAMED.ln());
+    }
 
     /// Two runs of three readings, each with a zero of its own: what is left is what differs within.
     #[test]

@@ -12,9 +12,9 @@
 //!
 //! S the squares that each leaves of n data about the means of those that share a zero, ν of them
 //! free, z the numbers of the files that it needs (in standard uncertainties), k its own numbers
-//! (G. Schwarz, Ann. Statist. 6, 1978). Where a curve is needed beside the names, it is one of them.
-//! Of three names or more, a curve counted as one, that it needs fewer numbers
-//! and leaves as little is enough. A law that is likelier by less is said beside the names.
+//! (G. Schwarz, Ann. Statist. 6, 1978). A curve that is needed beside the names is one of them. Of
+//! three names or more it is enough that a law needs fewer numbers and leaves as little. A law that
+//! is likelier by less is said beside the names.
 
 use std::collections::BTreeMap;
 
@@ -147,7 +147,7 @@ mod tests {
         assert!(odds(0.0, 0.0, 1.0, 60.0) < -2.0 && odds(0.0, -9.0, 0.0, 60.0) > NAMED.ln());
     }
 
-    /// Two runs of three readings, each with a zero of its own: what is left is what differs within.
+    /// Two runs of three readings, each with a zero of its own: what differs within is left.
     #[test]
     fn a_zero_of_a_run_makes_nothing_likelier() {
         let shared = vec![0, 0, 0, 1, 1, 1];

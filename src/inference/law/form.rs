@@ -218,6 +218,12 @@ impl Form {
         }
     }
 
+    /// True for one that has neither a corner nor waves: two of them are no two laws.
+    pub fn is_gradual(self) -> bool {
+        let has_corner = matches!(self, Form::Saturation | Form::Threshold | Form::Step);
+        !has_corner && self != Form::Harmonic
+    }
+
     /// How many functions it has.
     pub fn count(self) -> usize {
         match self {
@@ -370,6 +376,13 @@ mod tests {
         let [cos, sin, _] = Form::Harmonic.functions(0.25, 1.0);
         assert!((cos + 1.0).abs() < 1e-15 && (sin - 1.0).abs() < 1e-15);
         assert_eq!(Form::Polynomial(3).functions(2.0, 0.0), [2.0, 4.0, 8.0]);
+    }
+
+    #[test]
+    fn corners_and_waves_are_laws_beside_others() {
+        let gradual = Form::ALL.into_iter().filter(|form| form.is_gradual()).count();
+        assert_eq!(gradual, Form::ALL.len() - 4);
+        assert!(Form::Power.is_gradual() && !Form::Threshold.is_gradual() && !Form::Harmonic.is_gradual());
     }
 
     #[test]

@@ -75,9 +75,11 @@ pub(super) fn left_beside(
     let second = Alone { class: &class, held_out: &folds.own, curve };
     let is_enough = |both: &Both| law.log_odds > first.curve || !both.is_more_left(known, &sites_with);
     match together(known, [first, &second], &beside, &sites_with, is_enough) {
+        // two that bend little by little over one number are one curve, which neither is
+        Some(([one, other], _)) if one.is_of_curve_with(&other) => something,
         Some(([mut one, other], log_odds)) => {
             // together they are so much likelier than the curve that draws both
-            one.log_odds.1 = log_odds - first.curve;
+            one.log_odds.1 = log_odds.max(law.log_odds + other.log_odds.0) - first.curve;
             let (first, law) = (one, other);
             Left::Laws(Box::new(first), Box::new(Second { law, held_out: (folds.without, folds.with) }))
         }

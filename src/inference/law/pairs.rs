@@ -104,6 +104,7 @@ pub(super) fn settle(
 ) -> f64 {
     let [one, other] = laws;
     let mut wider = 1.0;
+    let mut likeliest = (f64::NEG_INFINITY, [one.at, other.at]);
     for _ in 0..STEPS {
         let about = [-1.0, 0.0, 1.0];
         let all = about.iter().flat_map(|a| about.iter().map(move |b| (*a, *b)));
@@ -112,6 +113,11 @@ pub(super) fn settle(
                 .collect::<Vec<_>>(),
         );
         let at = |a: usize, b: usize| g[3 * a + b];
+        // uphill alone
+        if at(1, 1) < likeliest.0 {
+            break;
+        }
+        likeliest = (at(1, 1), [one.at, other.at]);
         // in deviations
         let slope = [0.5 * (at(2, 1) - at(0, 1)), 0.5 * (at(1, 2) - at(1, 0))];
         let bend = [2.0 * at(1, 1) - at(0, 1) - at(2, 1), 2.0 * at(1, 1) - at(1, 0) - at(1, 2)];
@@ -134,5 +140,6 @@ pub(super) fn settle(
             break;
         }
     }
+    [one.at, other.at] = likeliest.1;
     wider
 }

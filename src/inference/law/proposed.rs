@@ -171,6 +171,9 @@ impl Proposed {
     }
 }
 
+/// cos of the angle between what is the same but for a factor.
+const ALIKE: f64 = 0.999;
+
 impl Law {
     /// True where place, variable, form and memory are those of another law, and so is what it
     /// adds, but for a factor. Waves of two frequencies are two laws, and so are lags of two times
@@ -185,6 +188,25 @@ impl Law {
             && (self.form, &self.memory) == (other.form, &other.memory)
             && !are_two
             && a.dot(&b).abs() > SAME * a.norm() * b.norm()
+    }
+
+    /// True where another law bends over the same number, but for a factor, at a place that does
+    /// the same to the data, and neither has a memory, a wave or a corner of its own.
+    pub(super) fn is_of_curve_with(&self, other: &Law) -> bool {
+        let bends = |law: &Law| law.memory == Memory::None && law.form.is_gradual();
+        let is_alike = |a: &[f64], b: &[f64]| {
+            let known = || a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite());
+            let product: f64 = known().map(|(a, b)| a * b).sum();
+            let squares = known().fold((0.0, 0.0), |(x, y), (a, b)| (x + a * a, y + b * b));
+            product.abs() > ALIKE * (squares.0 * squares.1).sqrt()
+        };
+        let weights = [self, other].map(|law| law.site.directions.iter().flat_map(|(_, own)| own.clone()));
+        let [own, others] = weights.map(Iterator::collect::<Vec<f64>>);
+        bends(self)
+            && bends(other)
+            && own.len() == others.len()
+            && is_alike(&self.site.values, &other.site.values)
+            && is_alike(&own, &others)
     }
 
     /// Its intervals by this factor as wide, about its numbers.

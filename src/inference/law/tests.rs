@@ -138,11 +138,11 @@ fn warmed(seed: u64, temperature: &dyn Fn(f64) -> f64, parts: &[(f64, f64)]) -> 
         let start = temperature(0.0);
         let mut own = start;
         // by the differential equation, in steps of a second; what nobody read goes evenly
-        for k in 1..COUNT {
+        for (k, lag) in lags.iter_mut().enumerate().skip(1) {
             let [before, now] = [k - 1, k].map(|k| temperature(minute(k)));
             let seconds = (0..60).map(|s| before + (now - before) * (f64::from(s) + 0.5) / 60.0);
             own = seconds.fold(own, |own, there| own + (there - own) / time);
-            lags[k] += size * (own - start);
+            *lag += size * (own - start);
         }
     }
     let mut model = Columns::new(COUNT);
@@ -252,6 +252,20 @@ fn a_law_is_repeated_by_what_does_the_same_there() {
     assert!(!law.repeats(&elsewhere) && !law.repeats(&form));
 }
 
+/// What bends a little over one number and what bends a little over it again are one curve; a wave
+/// beside it is a law of its own, and so is what acts elsewhere.
+#[test]
+fn two_that_bend_alike_are_one_curve() {
+    let law = law_of(1, |f| 15.0 * (f / 12.0).powf(0.5));
+    let bent = Law { form: Form::Power, memory: Memory::None, ..law };
+    let again = Law { form: Form::Approach, ..bent.clone() };
+    assert!(bent.is_of_curve_with(&again));
+    assert!(!bent.is_of_curve_with(&Law { form: Form::Harmonic, ..again.clone() }));
+    let mut elsewhere = again;
+    elsewhere.site.directions[0].1[..30].iter_mut().for_each(|weight| *weight = 0.0);
+    assert!(!bent.is_of_curve_with(&elsewhere));
+}
+
 #[test]
 fn of_noise_and_of_what_is_explained_there_is_no_law() {
     for seed in 0..20 {
@@ -302,11 +316,11 @@ fn what_is_rare_comes_after_what_is_usual() {
         let mut of_sites: [&'static [Form]; 2] = [&[], &[]];
         of_sites[rare] = &Form::ALL;
         let law = propose(&model, &diagnosis, &|_| two(of_sites)).unwrap().law.unwrap();
-        assert_eq!(law.site.location, Location::Part(usual.clone()));
+        assert_eq!(law.site.location, Location::Part(usual));
         assert!(
             law.rivals
                 .iter()
-                .any(|rival| rival.form == law.form && rival.site.location != Location::Part(usual.clone()))
+                .any(|rival| rival.form == law.form && rival.site.location != Location::Part(usual))
         );
     }
 }

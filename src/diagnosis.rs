@@ -8,6 +8,7 @@ pub mod calibration;
 mod diagnosed;
 mod law_formula;
 mod limitation;
+mod one_law;
 pub mod rig;
 mod suspicion;
 

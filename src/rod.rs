@@ -257,6 +257,11 @@ impl<T: Number> Rod<T> {
         self.bend_start() + self.arc_length()
     }
 
+    /// Station of the middle of the bend, m.
+    pub fn bend_middle(&self) -> T {
+        (self.bend_start() + self.bend_end()) / 2.0
+    }
+
     /// Length of the centreline and so the tip's station, m.
     pub fn length(&self) -> T {
         self.bend_end() + self.l2 - self.tangent_length()

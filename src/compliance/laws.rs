@@ -51,6 +51,7 @@ impl StaticLaws {
             let station = match &law.place {
                 RodLawPlace::Rod | RodLawPlace::Clamp | RodLawPlace::Slide => None,
                 RodLawPlace::Root => Some(0.0),
+                RodLawPlace::Bend => Some(rod.bend_middle()),
                 RodLawPlace::Joint(name) => Some(rod.joints.iter().find(|own| own.name == *name)?.station),
                 RodLawPlace::Sensor(_) => return None,
             };

@@ -21,6 +21,8 @@ pub enum Limitation {
     JumpsAtTurns,
     /// Names, by their causes, that would be needed instead of a law, with so many numbers.
     NamesForLaw(String, usize),
+    /// A law, described, that is as likely as the names.
+    LawForNames(String),
     /// The readings have no folds that could be held out.
     NoFoldsOfReadings,
     /// The calibration did not come to rest.
@@ -77,6 +79,11 @@ impl fmt::Display for Limitation {
                 f,
                 "Without the proposed law something would have to be named that explains no more, with {numbers} numbers \
                  or more: {causes}. The law needs fewer and predicts as well.",
+            ),
+            Limitation::LawForNames(law) => write!(
+                f,
+                "One law explains these readings as well as what is named, or better by less than the odds that it \
+                 takes to replace it: {law}.",
             ),
             Limitation::NoFoldsOfReadings => f.write_str(
                 "The readings are too few to hold any out: no finding is confirmed by \

@@ -28,6 +28,7 @@ mod form;
 mod left;
 mod measured;
 mod memory;
+mod pairs;
 mod peak;
 mod posterior;
 mod proposal;
@@ -42,7 +43,7 @@ pub mod points;
 mod tests;
 
 pub use bouc_wen::LoopShape;
-pub use form::{Constant, Form, FormConstant};
+pub use form::{Constant, Form, FormConstant, OpenEnd};
 pub use memory::Memory;
 pub use proposal::propose;
 pub use proposed::{Beside, Law, LawRival, NextRecord, Point, Proposed, Refusal, Second};

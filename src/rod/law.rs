@@ -223,7 +223,7 @@ impl LawVariable {
             RodLawPlace::Clamp => self == LawVariable::Load,
             RodLawPlace::Slide => self == LawVariable::SinceChange,
             RodLawPlace::Sensor(_) => self == LawVariable::Reading,
-            RodLawPlace::Root | RodLawPlace::Joint(_) => self == LawVariable::Moment,
+            RodLawPlace::Root | RodLawPlace::Bend | RodLawPlace::Joint(_) => self == LawVariable::Moment,
         }
     }
 }
@@ -308,7 +308,7 @@ impl RodLaw {
             RodLawPlace::Rod if self.variable == LawVariable::Load => "N",
             RodLawPlace::Rod | RodLawPlace::Slide => "%",
             RodLawPlace::Clamp | RodLawPlace::Sensor(_) => "µm",
-            RodLawPlace::Root | RodLawPlace::Joint(_) => "µrad",
+            RodLawPlace::Root | RodLawPlace::Bend | RodLawPlace::Joint(_) => "µrad",
         }
     }
 
@@ -319,7 +319,7 @@ impl RodLaw {
             RodLawPlace::Rod | RodLawPlace::Slide => "Δu/u",
             RodLawPlace::Clamp => "Δu",
             RodLawPlace::Sensor(_) => "Δy",
-            RodLawPlace::Root | RodLawPlace::Joint(_) => "Δθ",
+            RodLawPlace::Root | RodLawPlace::Bend | RodLawPlace::Joint(_) => "Δθ",
         }
     }
 

@@ -750,7 +750,7 @@ fn a_law_says_what_is_wrong_where_in_its_formula() {
         (
             "\"root\"",
             "\"foot\"",
-            "rod.toml:34:9: `law.place` is \"foot\", expected one of rod, clamp, root, slide, dx, \
+            "rod.toml:34:9: `law.place` is \"foot\", expected one of rod, clamp, root, bend, slide, dx, \
           dy, dz, sleeve-a, sleeve-b",
         ),
         (

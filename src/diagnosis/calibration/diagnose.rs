@@ -6,6 +6,7 @@ pub mod forward_model;
 pub mod hung;
 pub mod limits;
 pub mod memory;
+pub mod one_law;
 pub mod prepared;
 pub mod sides;
 pub mod tails;
@@ -129,6 +130,18 @@ pub fn diagnose_calibrated<'c>(
             diagnosis = infer(&prepared.model, &prepared.evidence);
         }
     }
+    let one_law = one_law::instead(campaign, &prepared.model.calibration, &look, &diagnosis)?;
+    let (one_law, names) = match one_law {
+        Some((Some(one), names)) => {
+            let Prepared { not_testable, absorbed, .. } = prepared;
+            prepared = Prepared { not_testable, absorbed, ..one.prepared };
+            diagnosis = one.diagnosis;
+            rivals.clear();
+            (Some(one.law), Some(names))
+        }
+        Some((None, law)) => (None, Some(law)),
+        None => (None, None),
+    };
     let arrival = unknown_arrival(&prepared.model, &mut diagnosis);
     let Prepared { model, evidence, absorbed, not_testable, context, .. } = prepared;
     let next = next_measurements(&model, &context, &evidence, &diagnosis)?;
@@ -136,10 +149,11 @@ pub fn diagnose_calibrated<'c>(
         finding.next = next;
     }
     with_rivals(&mut diagnosis, rivals);
-    let law = propose(&model, &diagnosis, &|change| sites(&context, change.len()));
+    let law = one_law.or_else(|| propose(&model, &diagnosis, &|change| sites(&context, change.len())));
     let mut limits = limits(&context, &model.calibration, &evidence);
     limits.extend(look.scatter.iter().flat_map(|noise| noisy(campaign, noise)));
     limits.extend(arrival);
+    limits.extend(names);
     limits.extend(unknown_sides(&context, &diagnosis));
     let of_neighbours = evidence.correlated_noise;
     limits.extend(of_neighbours.map(|noise| Limitation::CorrelatedPoses(noise.share, noise.length)));

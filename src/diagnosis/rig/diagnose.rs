@@ -168,10 +168,11 @@ pub fn diagnose_with(
         false => None,
     };
     let (one_law, names) = match one_law {
-        Some(one) => {
+        Some((Some(one), names)) => {
             (model, evidence, diagnosis) = (one.model, one.evidence, one.diagnosis);
-            (Some(one.law), Some(one.names))
+            (Some(one.law), Some(names))
         }
+        Some((None, law)) => (None, Some(law)),
         None => (None, None),
     };
     as_measured::resize(&model, &evidence, &mut diagnosis);

@@ -13,6 +13,14 @@ const POINTS: usize = 21;
 const SHARPNESSES: [f64; 3] = [1.0, 2.0, 5.0];
 const BALANCES: [f64; 2] = [0.55, 0.9];
 
+/// Columns of one and then of the other.
+pub(super) fn beside_each_other(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
+    let (count, more) = (one.ncols(), other.ncols());
+    let mut both = one.clone().resize_horizontally(count + more, 0.0);
+    both.columns_mut(count, more).copy_from(other);
+    both
+}
+
 /// One law among all.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Choice {
@@ -41,7 +49,16 @@ impl Choice {
                 let is_of = match memory {
                     // of what has one sign only a level is a zero
                     Memory::None => form != Form::Settling || site.range().0 < 0.0,
-                    Memory::Side => !matches!(form, Form::PowerAfterGap | Form::Threshold | Form::Harmonic),
+                    Memory::Side => !matches!(
+                        form,
+                        Form::PowerAfterGap
+                            | Form::Rounded
+                            | Form::Threshold
+                            | Form::Harmonic
+                            | Form::Pull
+                            | Form::PullBelow
+                            | Form::PullAbove
+                    ),
                     Memory::Stop | Memory::BoucWen(_) | Memory::Lag | Memory::Lagged => {
                         form == Form::Polynomial(1)
                     }

@@ -99,6 +99,7 @@ pub(super) fn described(
         explains: rms(&fitted.own),
         noise: fitted.sigma,
         adds: fitted.own.iter().copied().collect(),
+        left: Vec::new(),
         beside: beside(known, &fitted.base),
         rivals,
         next: None,
@@ -110,6 +111,7 @@ pub(super) fn described(
         site,
     };
     let residual = &evidence.residual - &fitted.predicted;
+    law.left = residual.iter().copied().collect();
     law.points = points(&law, best.choice, &residual);
     law.curve = smooth(&law.points, law.site.directions.len());
     law.next = next(&law);

@@ -13,6 +13,8 @@ pub enum Form {
     PowerAfterGap,
     /// a·min(ξ/ξ₀, 1): it grows up to ξ₀ and no further.
     Saturation,
+    /// a·tanh(ξ/ξ₀): it grows up to a level, bending little by little.
+    Rounded,
     /// a·max(ξ − ξ₀, 0): it grows from ξ₀ on.
     Threshold,
     /// a where ξ > ξ₀.
@@ -27,6 +29,12 @@ pub enum Form {
     Logarithm,
     /// a·(cos(2πf·ξ) − 1) + b·sin(2πf·ξ): readings are offsets from what was read at zero.
     Harmonic,
+    /// k·(1/(ξ₀ − ξ)² − 1/ξ₀²): a pull, from zero on, by what is at ξ₀ beyond all data.
+    Pull,
+    /// k/(ξ − ξ₀)²: the same of a place, ξ₀ below all data.
+    PullBelow,
+    /// The same, ξ₀ above all data.
+    PullAbove,
     /// a₁·ξ + … of this degree, 1 to 3.
     Polynomial(u8),
 }
@@ -40,6 +48,8 @@ pub enum FormConstant {
     Corner,
     /// ξ₀ of an approach, a decay or a logarithm: a length along the variable.
     Scale,
+    /// ξ₀ of a pull: a value of the variable beyond the data.
+    Pole,
     /// Period of a wave, 1/f, of the variable.
     Period,
     /// Half the width of a play, of the variable.
@@ -68,6 +78,17 @@ pub struct Constant {
     /// Other values within the interval that these data do not distinguish from it, each apart from
     /// the rest: periods that every reading meets alike.
     pub also: Vec<f64>,
+    /// The end of the interval that these data do not determine: it is where the search ended.
+    pub open: Option<OpenEnd>,
+}
+
+/// An end of an interval that is none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OpenEnd {
+    /// It may be as small as it likes.
+    Low,
+    /// It may be as large as it likes.
+    High,
 }
 
 /// Exponents that a law may have: roots to fourth powers.
@@ -78,6 +99,10 @@ const APPROACH: (f64, f64) = (0.03, 2.0);
 const LOGARITHM: (f64, f64) = (1e-3, 1.0);
 /// Where a saturation may begin.
 const SATURATION: (f64, f64) = (0.05, 0.98);
+/// Where something pulls, from the end of the data on, as a share of their range.
+const AWAY: (f64, f64) = (0.05, 3.0);
+/// Least square of a distance, as a share of X².
+const NEAREST: f64 = 1e-6;
 /// Points of a first look at a number that is not linear.
 const POINTS: usize = 21;
 /// Cycles over the range of the variable: fewer are a bend, more than so many nobody looks for.
@@ -90,10 +115,11 @@ const LEVELS_OF_A_WAVE: usize = 6;
 
 impl Form {
     /// All of them.
-    pub const ALL: [Form; 13] = [
+    pub const ALL: [Form; 17] = [
         Form::Power,
         Form::PowerAfterGap,
         Form::Saturation,
+        Form::Rounded,
         Form::Threshold,
         Form::Step,
         Form::Approach,
@@ -101,6 +127,28 @@ impl Form {
         Form::Settling,
         Form::Logarithm,
         Form::Harmonic,
+        Form::Pull,
+        Form::PullBelow,
+        Form::PullAbove,
+        Form::Polynomial(1),
+        Form::Polynomial(2),
+        Form::Polynomial(3),
+    ];
+
+    /// Of a load or what grows with it, from zero on.
+    pub const FROM_ZERO: &[Form] = &[
+        Form::Power,
+        Form::PowerAfterGap,
+        Form::Saturation,
+        Form::Rounded,
+        Form::Threshold,
+        Form::Step,
+        Form::Approach,
+        Form::Decay,
+        Form::Settling,
+        Form::Logarithm,
+        Form::Harmonic,
+        Form::Pull,
         Form::Polynomial(1),
         Form::Polynomial(2),
         Form::Polynomial(3),
@@ -111,6 +159,7 @@ impl Form {
         Form::Power,
         Form::PowerAfterGap,
         Form::Saturation,
+        Form::Rounded,
         Form::Threshold,
         Form::Step,
         Form::Approach,
@@ -137,12 +186,24 @@ impl Form {
     pub const FROM_ANYWHERE: &[Form] =
         &[Form::Threshold, Form::Step, Form::Polynomial(1), Form::Polynomial(2), Form::Polynomial(3)];
 
+    /// Of a position: something may pull at either end.
+    pub const OF_A_POSITION: &[Form] = &[
+        Form::Threshold,
+        Form::Step,
+        Form::PullBelow,
+        Form::PullAbove,
+        Form::Polynomial(1),
+        Form::Polynomial(2),
+        Form::Polynomial(3),
+    ];
+
     /// For people and JSON.
     pub fn name(self) -> &'static str {
         match self {
             Form::Power => "power",
             Form::PowerAfterGap => "power after a gap",
             Form::Saturation => "saturation",
+            Form::Rounded => "rounded saturation",
             Form::Threshold => "threshold with slope",
             Form::Step => "step",
             Form::Approach => "exponential approach",
@@ -150,10 +211,17 @@ impl Form {
             Form::Settling => "exponential decay to a level",
             Form::Logarithm => "logarithm",
             Form::Harmonic => "harmonic",
+            Form::Pull | Form::PullBelow | Form::PullAbove => "inverse square of a distance",
             Form::Polynomial(1) => "straight line",
             Form::Polynomial(2) => "polynomial of the second degree",
             Form::Polynomial(_) => "polynomial of the third degree",
         }
+    }
+
+    /// True for one that has neither a corner nor waves: two of them are no two laws.
+    pub fn is_gradual(self) -> bool {
+        let has_corner = matches!(self, Form::Saturation | Form::Threshold | Form::Step);
+        !has_corner && self != Form::Harmonic
     }
 
     /// How many functions it has.
@@ -170,7 +238,10 @@ impl Form {
         match self {
             Form::Power | Form::PowerAfterGap => Some(FormConstant::Exponent),
             Form::Saturation | Form::Threshold | Form::Step => Some(FormConstant::Corner),
-            Form::Approach | Form::Decay | Form::Settling | Form::Logarithm => Some(FormConstant::Scale),
+            Form::Approach | Form::Decay | Form::Settling | Form::Logarithm | Form::Rounded => {
+                Some(FormConstant::Scale)
+            }
+            Form::Pull | Form::PullBelow | Form::PullAbove => Some(FormConstant::Pole),
             Form::Harmonic => Some(FormConstant::Period),
             Form::Polynomial(_) => None,
         }
@@ -185,6 +256,7 @@ impl Form {
             Form::PowerAfterGap if xi == 0.0 => [0.0; 3],
             Form::PowerAfterGap => [odd(&|xi| xi.powf(s)), odd(&|_| 1.0), 0.0],
             Form::Saturation => one(odd(&|xi| (xi / s).min(1.0))),
+            Form::Rounded => one((xi / s).tanh()),
             Form::Threshold => one((xi - s).max(0.0)),
             Form::Step => one(if xi > s { 1.0 } else { 0.0 }),
             Form::Approach => one(odd(&|xi| -(-xi / s).exp_m1())),
@@ -195,6 +267,8 @@ impl Form {
                 let (sin, cos) = (TAU * s * xi).sin_cos();
                 [cos - 1.0, sin, 0.0]
             }
+            Form::Pull => one(odd(&|xi| inverse_square(s - xi) - inverse_square(s))),
+            Form::PullBelow | Form::PullAbove => one(inverse_square(xi - s)),
             Form::Polynomial(_) => [xi, xi * xi, xi * xi * xi],
         }
     }
@@ -217,8 +291,15 @@ impl Form {
             | Form::Decay
             | Form::Settling
             | Form::Logarithm
+            | Form::Rounded
             | Form::Harmonic => true,
-            Form::Saturation | Form::Threshold | Form::Step | Form::Polynomial(_) => false,
+            Form::Saturation
+            | Form::Threshold
+            | Form::Step
+            | Form::Pull
+            | Form::PullBelow
+            | Form::PullAbove
+            | Form::Polynomial(_) => false,
         }
     }
 
@@ -229,13 +310,20 @@ impl Form {
             (0..count).map(|k| a + (b - a) * k as f64 / (count - 1) as f64).collect()
         };
         let logs = |(a, b): (f64, f64)| between((a.ln(), b.ln()), POINTS);
+        let away = || {
+            let (first, last) = (AWAY.0.ln(), AWAY.1.ln());
+            (0..POINTS).map(move |k| (first + (last - first) * k as f64 / (POINTS - 1) as f64).exp())
+        };
         let constants = self.count() + usize::from(self.constant().is_some());
         if levels <= constants {
             return Vec::new();
         }
         match self {
             Form::Power | Form::PowerAfterGap => logs(EXPONENTS),
-            Form::Approach | Form::Decay | Form::Settling => logs(APPROACH),
+            Form::Approach | Form::Decay | Form::Settling | Form::Rounded => logs(APPROACH),
+            Form::Pull if low < 0.0 => Vec::new(),
+            Form::Pull | Form::PullAbove => away().map(|distance| high + distance * (high - low)).collect(),
+            Form::PullBelow => away().rev().map(|distance| low - distance * (high - low)).collect(),
             Form::Logarithm => logs(LOGARITHM),
             Form::Saturation => between(SATURATION, POINTS),
             Form::Threshold | Form::Step => {
@@ -254,6 +342,11 @@ impl Form {
             Form::Polynomial(_) => vec![0.0],
         }
     }
+}
+
+/// 1/d², of no distance that is nothing.
+fn inverse_square(distance: f64) -> f64 {
+    distance.powi(2).max(NEAREST).recip()
 }
 
 #[cfg(test)]
@@ -276,10 +369,20 @@ mod tests {
         assert!((at(Form::Decay, 1.0, 0.5) - (-2.0f64).exp()).abs() < 1e-15);
         assert_eq!(Form::Settling.functions(0.0, 0.5), [1.0, 1.0, 0.0]);
         assert_eq!(Form::Settling.functions(-0.5, 0.5), [-(-1.0f64).exp(), -1.0, 0.0]);
+        assert_eq!(Form::Pull.functions(1.0, 2.0)[0], 1.0 - 0.25);
+        assert_eq!((at(Form::PullBelow, 1.0, -1.0), at(Form::PullAbove, 1.0, 1.5)), (0.25, 4.0));
+        assert_eq!(at(Form::Rounded, -0.5, 0.5), -(1.0f64).tanh());
         // a quarter of a period on, the cosine is gone and the sine whole
         let [cos, sin, _] = Form::Harmonic.functions(0.25, 1.0);
         assert!((cos + 1.0).abs() < 1e-15 && (sin - 1.0).abs() < 1e-15);
         assert_eq!(Form::Polynomial(3).functions(2.0, 0.0), [2.0, 4.0, 8.0]);
+    }
+
+    #[test]
+    fn corners_and_waves_are_laws_beside_others() {
+        let gradual = Form::ALL.into_iter().filter(|form| form.is_gradual()).count();
+        assert_eq!(gradual, Form::ALL.len() - 4);
+        assert!(Form::Power.is_gradual() && !Form::Threshold.is_gradual() && !Form::Harmonic.is_gradual());
     }
 
     #[test]

@@ -2,9 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::choice::Choice;
+use super::choice::{Choice, beside_each_other};
 use super::described::{Data, Known, alike, described};
 use super::folds::hold_out;
+use super::pairs::{Numbered, settle};
 use super::proposed::{Law, Second};
 use super::remainder::Remainder;
 use super::scan::{Scan, Scanned, refit, scan_as_predicted};
@@ -74,9 +75,11 @@ pub(super) fn left_beside(
     let second = Alone { class: &class, held_out: &folds.own, curve };
     let is_enough = |both: &Both| law.log_odds > first.curve || !both.is_more_left(known, &sites_with);
     match together(known, [first, &second], &beside, &sites_with, is_enough) {
-        Some([mut one, other]) => {
+        // two that bend little by little over one number are one curve, which neither is
+        Some(([one, other], _)) if one.is_of_curve_with(&other) => something,
+        Some(([mut one, other], log_odds)) => {
             // together they are so much likelier than the curve that draws both
-            one.log_odds.1 = law.log_odds + other.log_odds.0 - first.curve;
+            one.log_odds.1 = log_odds.max(law.log_odds + other.log_odds.0) - first.curve;
             let (first, law) = (one, other);
             Left::Laws(Box::new(first), Box::new(Second { law, held_out: (folds.without, folds.with) }))
         }
@@ -94,29 +97,40 @@ pub(super) fn gain_beside(data: &Data, law: &DMatrix<f64>, curve: &DMatrix<f64>)
 /// Columns of two laws.
 struct Both([DMatrix<f64>; 2]);
 
-/// Two laws, each as it is beside the other; `None` where they are not `enough`. Beside the other a
-/// law may have another form: all are tried once more.
+/// Two laws, each as it is beside the other, and their ln odds against nothing; `None` where they
+/// are not `enough`. Beside the other a law may have another form: all are tried once more.
 fn together(
     known: &Known,
     alone: [&Alone; 2],
     beside: &[Site],
     sites_with: &dyn Fn(&DVector<f64>) -> Vec<Site>,
     enough: impl Fn(&Both) -> bool,
-) -> Option<[Law; 2]> {
+) -> Option<([Law; 2], f64)> {
     let laws = [*alone[0].class.first()?, *alone[1].class.first()?];
     let mut both = Both([columns(known, laws[0], known.sites), columns(known, laws[1], beside)]);
     let mut tried: [Option<Vec<Choice>>; 2] = [None, None];
+    let mut prices = laws.map(|law| law.price);
+    let mut numbered: [Option<Numbered>; 2] = [None, None];
     for _ in 0..ROUNDS {
         for free in [0, 1] {
-            let (choices, columns) =
+            let (choices, columns, price, own) =
                 both.beside(known, free, tried[free].as_deref(), sites_with, |known, found| {
                     let best = found.laws.first()?;
                     let choices = alike(found, best).iter().map(|law| law.choice).collect();
-                    Some((choices, columns(known, best, known.sites)))
+                    let own = Numbered::new(best, &known.sites[best.choice.site]);
+                    Some((choices, columns(known, best, known.sites), best.price, own))
                 })?;
-            both.0[free] = columns;
+            (both.0[free], prices[free], numbered[free]) = (columns, price, own);
             tried[free].get_or_insert(choices);
         }
+    }
+    // what is alike in both is found by both together
+    let mut wider = 1.0;
+    if let [Some(a), Some(b)] = &mut numbered {
+        let size = WIDE * known.data.size;
+        let gains = |sets: &[DMatrix<f64>]| known.remainder.gains(sets.len(), |k| sets[k].clone());
+        wider = settle([a, b], &gains, size);
+        both = Both([a, b].map(|law| law.columns(0.0, size)));
     }
     if !enough(&both) {
         return None;
@@ -133,8 +147,11 @@ fn together(
             described(known, &class, &held_out, curve)
         })
     };
-    let [one, other] = [described(0)?, described(1)?];
-    (!other.repeats(&one)).then_some([one, other])
+    let [mut one, mut other] = [described(0)?, described(1)?];
+    one.widen(wider);
+    other.widen(wider);
+    let log_odds = known.remainder.fit(&both.side_by_side()).gain - prices.iter().sum::<f64>();
+    (!other.repeats(&one)).then_some(([one, other], log_odds))
 }
 
 impl Both {
@@ -160,13 +177,15 @@ impl Both {
         then(&beside, &found)
     }
 
+    fn side_by_side(&self) -> DMatrix<f64> {
+        beside_each_other(&self.0[0], &self.0[1])
+    }
+
     /// What each adds to each datum.
     fn adds(&self, known: &Known) -> [DVector<f64>; 2] {
         let [one, other] = &self.0;
         let (count, more) = (one.ncols(), other.ncols());
-        let mut side_by_side = one.clone().resize_horizontally(count + more, 0.0);
-        side_by_side.columns_mut(count, more).copy_from(other);
-        let factors = known.remainder.fit(&side_by_side).factors;
+        let factors = known.remainder.fit(&self.side_by_side()).factors;
         [one * factors.rows(0, count), other * factors.rows(count, more)]
     }
 
@@ -195,9 +214,5 @@ fn rows(evidence: &Evidence) -> Vec<usize> {
 
 /// An evidence in which columns stand among what else may be there, their amplitudes free.
 fn with_columns(evidence: &Evidence, columns: &DMatrix<f64>) -> Evidence {
-    let known = evidence.background.ncols();
-    let mut background = DMatrix::zeros(columns.nrows(), known + columns.ncols());
-    background.columns_mut(0, known).copy_from(&evidence.background);
-    background.columns_mut(known, columns.ncols()).copy_from(columns);
-    Evidence { background, ..evidence.clone() }
+    Evidence { background: beside_each_other(&evidence.background, columns), ..evidence.clone() }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::choice::LawColumns;
-use super::form::{Constant, Form, FormConstant};
+use super::form::{Constant, Form, FormConstant, OpenEnd};
 use super::remainder::Remainder;
 use super::scan::{SAME, Scanned};
 use super::site::Site;
@@ -45,7 +45,7 @@ impl Measured {
             let half = factor * covariance[(k, k)].max(0.0).sqrt();
             let (value, low, high) = (mode[k] / si, (mean[k] - half) / si, (mean[k] + half) / si);
             let (low, high) = (low.min(value), high.max(value));
-            Constant { symbol, name, unit, value, low, high, also: Vec::new() }
+            Constant { symbol, name, unit, value, low, high, also: Vec::new(), open: None }
         };
         let constant = choice.constant().map(|what| (what, shape(site, law, what)));
         Measured {
@@ -104,7 +104,11 @@ fn along(site: &Site, what: FormConstant, s: f64) -> f64 {
     let scale = site.largest() / site.variable.si;
     match what {
         FormConstant::Exponent | FormConstant::Lag => s,
-        FormConstant::Corner | FormConstant::Scale | FormConstant::Play | FormConstant::Yield => s * scale,
+        FormConstant::Corner
+        | FormConstant::Scale
+        | FormConstant::Pole
+        | FormConstant::Play
+        | FormConstant::Yield => s * scale,
         FormConstant::Period => scale / s,
     }
 }
@@ -113,10 +117,11 @@ fn along(site: &Site, what: FormConstant, s: f64) -> f64 {
 /// per power of the variable.
 fn names(site: &Site, form: Form) -> Vec<(String, String, String, f64)> {
     let (result, variable) = (&site.result, &site.variable);
-    let per = |power: u8| {
+    let per = |power: i8| {
         let below = bracketed(variable.unit);
         let unit = match power {
             _ if power == 0 || below.is_empty() => result.unit.to_owned(),
+            -2 => format!("{}·{below}²", result.unit),
             1 => format!("{}/{below}", result.unit),
             2 => format!("{}/{below}²", result.unit),
             _ => format!("{}/{below}³", result.unit),
@@ -124,11 +129,12 @@ fn names(site: &Site, form: Form) -> Vec<(String, String, String, f64)> {
         // amplitudes are of the scaled variable
         (unit, result.si * (site.largest() / variable.si).powi(i32::from(power)))
     };
-    let of_form: Vec<(&str, &str, u8)> = match form {
+    let of_form: Vec<(&str, &str, i8)> = match form {
         Form::Harmonic => vec![("a", "cosine", 0), ("b", "sine", 0)],
         Form::Threshold => vec![("k", "slope", 1)],
         Form::Step => vec![("a", "height", 0)],
-        Form::Saturation | Form::Approach => vec![("a", "final value", 0)],
+        Form::Saturation | Form::Approach | Form::Rounded => vec![("a", "final value", 0)],
+        Form::Pull | Form::PullBelow | Form::PullAbove => vec![("k", "strength", -2)],
         Form::Decay => vec![("a", "first value", 0)],
         Form::Settling => vec![("a", "first value above the level", 0), ("b", "level", 0)],
         Form::Power => vec![("a", "value at the largest", 0)],
@@ -168,6 +174,7 @@ fn of_loop(law: &Scanned) -> Vec<Constant> {
         low: low.min(value),
         high: high.max(value),
         also: Vec::new(),
+        open: None,
     };
     let (low, high) = peak.interval(1);
     vec![
@@ -185,12 +192,21 @@ fn shape(site: &Site, law: &Scanned, what: FormConstant) -> Constant {
         FormConstant::Exponent => ("p".to_owned(), "exponent", ""),
         FormConstant::Corner => (format!("{variable}_0"), "corner", unit.unit),
         FormConstant::Scale => (format!("{variable}_0"), "scale", unit.unit),
+        FormConstant::Pole => (format!("{variable}_0"), "place of the pull", unit.unit),
         FormConstant::Play => ("r".to_owned(), "half width", unit.unit),
         FormConstant::Yield => ("r".to_owned(), "yield", unit.unit),
         FormConstant::Period => ("P".to_owned(), "period", unit.unit),
         FormConstant::Lag => ("tau".to_owned(), "time constant", "s"),
     };
-    let ends = [law.posterior.quantile(0.025), law.posterior.quantile(0.975)].map(at);
+    // times and lengths that are far longer than the data are all alike
+    let is_scale = matches!(what, FormConstant::Scale | FormConstant::Lag);
+    let open = law.posterior.open_end().filter(|_| is_scale && law.peak.is_none());
+    let ends = match open {
+        None => (0.025, 0.975),
+        Some(OpenEnd::High) => (0.05, 1.0),
+        Some(OpenEnd::Low) => (0.0, 0.95),
+    };
+    let ends = [law.posterior.quantile(ends.0), law.posterior.quantile(ends.1)].map(at);
     let value = at(law.at);
     // of numbers together there is one peak
     let modes = if law.peak.is_none() { law.posterior.modes(APART) } else { Vec::new() };
@@ -209,5 +225,6 @@ fn shape(site: &Site, law: &Scanned, what: FormConstant) -> Constant {
         low: ends[0].min(ends[1]).min(value),
         high: ends[0].max(ends[1]).max(value),
         also: others.into_iter().take(MOST_OTHERS).map(at).collect(),
+        open,
     }
 }

@@ -23,6 +23,9 @@ pub enum Memory {
     Lagged,
 }
 
+/// A lag may be so many times as long as the recording: it is known as a rate alone then.
+const LONGER: f64 = 5.0;
+
 impl Memory {
     /// All of them.
     pub const ALL: [Memory; 6] = [
@@ -87,7 +90,7 @@ impl Memory {
                 let shortest = known.fold(f64::INFINITY, f64::min);
                 // a load is what it is from one reading to the next; all else has changed before
                 let longest = match site.moves.is_empty() {
-                    true => waits().sum::<f64>(),
+                    true => LONGER * waits().sum::<f64>(),
                     false => 3.0 * waits().fold(0.0, f64::max),
                 };
                 let is_known = shortest.is_finite() && waits().all(f64::is_finite);
@@ -201,6 +204,7 @@ mod tests {
                 start: 0.0,
             }],
             forms: &Form::ALL,
+            rare: &[],
         }
     }
 
@@ -232,7 +236,7 @@ mod tests {
     fn a_lagged_self_comes_behind() {
         let mut site = site(&[0.0, 2.0, 4.0, 6.0, 100.0]);
         site.moves.clear();
-        assert_eq!(Memory::Lagged.range(&site), Some((0.6, 10.0)));
+        assert_eq!(Memory::Lagged.range(&site), Some((0.6, 50.0)));
         let (followed, _) = Memory::Lagged.remembered(&site, 0.5);
         assert!((followed[3] - 5.5).abs() < 1e-4, "{followed:?}");
         let exact = |t: f64| t - 0.5 + 0.5 * (-t / 0.5).exp();

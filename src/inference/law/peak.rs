@@ -41,6 +41,8 @@ pub(super) struct Peak {
     pub at: Vector3<f64>,
     /// Ln of the evidence, averaged over the prior.
     pub log_evidence: f64,
+    /// Ln of the evidence there.
+    pub highest: f64,
     /// Points with what share of the posterior each stands for.
     points: Vec<(Vector3<f64>, f64)>,
 }
@@ -98,7 +100,7 @@ impl Peak {
         most: f64,
     ) -> Peak {
         let volume: f64 = ranges.iter().map(|(low, high)| high - low).product();
-        let alone = Peak { at, log_evidence: most, points: vec![(at, 1.0)] };
+        let alone = Peak { at, log_evidence: most, highest: most, points: vec![(at, 1.0)] };
         let Some(root) = spread.cholesky().map(|cholesky| cholesky.l()) else { return alone };
         // −ln q of z, but for its constant
         let drawn = (1..=DRAWN).map(normal).map(|z| (at + root * z, 0.5 * z.norm_squared()));
@@ -114,7 +116,7 @@ impl Peak {
         points.iter_mut().for_each(|(_, weight)| *weight /= whole);
         let density = TAU.powf(1.5) * root.determinant();
         let log_evidence = most + (whole / DRAWN as f64 * density / volume).ln();
-        Peak { at, log_evidence, points }
+        Peak { at, log_evidence, highest: most, points }
     }
 
     /// Points that stand for as much of it each.

@@ -1,6 +1,8 @@
 //! What data say of a number that is not linear: its evidence on a grid that grows where the
 //! posterior is.
 
+use super::form::OpenEnd;
+
 /// Most times that the grid is made finer, and most points of it.
 const ROUNDS: usize = 8;
 const MOST: usize = 2000;
@@ -12,6 +14,8 @@ const STEP: f64 = 0.2;
 const FLANKS: (usize, f64) = (3, 40.0);
 /// Part of the whole from which on a peak counts, however low it is.
 const MANY: f64 = 0.05;
+/// Ln of the density below its largest up to which an end is open.
+const OPEN: f64 = 2.0;
 /// Parts that a stretch is cut into.
 const PARTS: usize = 3;
 
@@ -47,6 +51,17 @@ impl Posterior {
     pub fn best(&self) -> (f64, f64) {
         let best = self.points.iter().copied().reduce(|a, b| if b.1 > a.1 { b } else { a });
         best.unwrap_or((0.0, f64::NEG_INFINITY))
+    }
+
+    /// The end at which it is not over: its density there is no less than e^−2 of the largest.
+    pub fn open_end(&self) -> Option<OpenEnd> {
+        let [first, .., last] = &self.points[..] else { return None };
+        let (_, most) = self.best();
+        match (first.1 > most - OPEN, last.1 > most - OPEN) {
+            (_, true) => Some(OpenEnd::High),
+            (true, false) => Some(OpenEnd::Low),
+            (false, false) => None,
+        }
     }
 
     /// With a finer grid where it counts.

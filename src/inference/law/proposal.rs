@@ -6,6 +6,7 @@ use super::choice::Choice;
 use super::described::{Data, Known, alike, described};
 use super::folds::{WORTH, hold_out};
 use super::left::{Alone, Left, gain_beside, left_beside};
+use super::pairs::beginning;
 use super::proposed::{Law, Proposed, Refusal};
 use super::remainder::Remainder;
 use super::scan::{prior, refit, scan, scan_as_predicted};
@@ -92,14 +93,27 @@ pub fn propose(
     let folds = hold_out(&data, &all, (&choices, &tried));
     let Some(folds) = folds else { return refused(Refusal::NoFolds, None) };
     let errors = Some((folds.without, folds.with));
-    if behind <= 0.0 && !(folds.is_lower(folds.with) && folds.is_lower(folds.own[0])) {
+    let known = Known { data, sites: &all, remainder: &remainder, background: evidence.background.ncols() };
+    let beside = |alone: &Alone| left_beside(&known, alone, |own| sites(&(&change + own)));
+    // two laws of one memory make something together that neither is
+    let likeliest = curve_odds.max(best.log_odds);
+    if let Some(first) = beginning(&known, &found, likeliest + NAMED.ln()) {
+        let alone = Alone { class: &[&first], held_out: &[], curve: curve_odds };
+        if let Left::Laws(law, second) = beside(&alone) {
+            let is_likelier = law.log_odds.1 > likeliest - curve_odds + NAMED.ln();
+            let with = second.held_out.1;
+            if is_likelier && folds.is_lower(with) {
+                let (law, held_out) = (Law { second: Some(second), ..*law }, Some((folds.without, with)));
+                return Some(Proposed { law: Ok(law), lives, held_out });
+            }
+        }
+    }
+    let is_lower = folds.is_lower(folds.with) && folds.is_lower(folds.own[0]);
+    if behind <= 0.0 && !is_lower {
         return refused(Refusal::HeldOut, errors);
     }
-    let known = Known { data, sites: &all, remainder: &remainder, background: evidence.background.ncols() };
-    let is_lower = folds.is_lower(folds.with) && folds.is_lower(folds.own[0]);
-    let alone = Alone { class: &class, held_out: &folds.own, curve: curve_odds };
-    let left = match behind <= 0.0 || is_lower {
-        true => left_beside(&known, &alone, |own| sites(&(&change + own))),
+    let left = match is_lower {
+        true => beside(&Alone { class: &class, held_out: &folds.own, curve: curve_odds }),
         false => Left::Nothing,
     };
     let more = match left {

@@ -70,6 +70,8 @@ pub struct Law {
     pub noise: f64,
     /// What it adds to each datum, m.
     pub adds: Vec<f64>,
+    /// What is left of each datum beside it, m.
+    pub left: Vec<f64>,
     /// All else, as it is beside it.
     pub beside: Beside,
     /// Laws that these data do not distinguish from it, the likeliest first.
@@ -169,15 +171,51 @@ impl Proposed {
     }
 }
 
+/// cos of the angle between what is the same but for a factor.
+const ALIKE: f64 = 0.999;
+
 impl Law {
     /// True where place, variable, form and memory are those of another law, and so is what it
-    /// adds, but for a factor. Waves of two frequencies are two laws.
+    /// adds, but for a factor. Waves of two frequencies are two laws, and so are lags of two times
+    /// that are known apart.
     pub fn repeats(&self, other: &Law) -> bool {
         let [a, b] = [self, other].map(|law| DVector::from_column_slice(&law.adds));
+        let is_apart = |(a, b): (&Constant, &Constant)| a.high < b.low || b.high < a.low;
+        let constants = [self, other].map(|law| law.constant.as_ref().map(|(_, constant)| constant));
+        let are_two = self.memory.has_constant() && constants[0].zip(constants[1]).is_some_and(is_apart);
         (&self.site.location, &self.site.variable, &self.site.result)
             == (&other.site.location, &other.site.variable, &other.site.result)
             && (self.form, &self.memory) == (other.form, &other.memory)
+            && !are_two
             && a.dot(&b).abs() > SAME * a.norm() * b.norm()
+    }
+
+    /// True where another law bends over the same number, but for a factor, at a place that does
+    /// the same to the data, and neither has a memory, a wave or a corner of its own.
+    pub(super) fn is_of_curve_with(&self, other: &Law) -> bool {
+        let bends = |law: &Law| law.memory == Memory::None && law.form.is_gradual();
+        let is_alike = |a: &[f64], b: &[f64]| {
+            let known = || a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite());
+            let product: f64 = known().map(|(a, b)| a * b).sum();
+            let squares = known().fold((0.0, 0.0), |(x, y), (a, b)| (x + a * a, y + b * b));
+            product.abs() > ALIKE * (squares.0 * squares.1).sqrt()
+        };
+        let weights = [self, other].map(|law| law.site.directions.iter().flat_map(|(_, own)| own.clone()));
+        let [own, others] = weights.map(Iterator::collect::<Vec<f64>>);
+        bends(self)
+            && bends(other)
+            && own.len() == others.len()
+            && is_alike(&self.site.values, &other.site.values)
+            && is_alike(&own, &others)
+    }
+
+    /// Its intervals by this factor as wide, about its numbers.
+    pub(super) fn widen(&mut self, factor: f64) {
+        let of_form = self.constant.iter_mut().map(|(_, constant)| constant);
+        for own in self.amplitudes.iter_mut().chain(of_form) {
+            own.low = own.value - factor * (own.value - own.low);
+            own.high = own.value + factor * (own.high - own.value);
+        }
     }
 
     /// Of its numbers alone, for tests of what is made of them.
@@ -202,6 +240,7 @@ impl Law {
             explains: 0.0,
             noise: 0.0,
             adds: Vec::new(),
+            left: Vec::new(),
             beside: Beside::default(),
             rivals: Vec::new(),
             next: None,

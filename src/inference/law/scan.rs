@@ -41,6 +41,8 @@ pub(super) struct Scanned {
     pub peak: Option<Peak>,
     /// Ln of its odds against nothing, prior included.
     pub log_odds: f64,
+    /// So much less than at its best numbers, which are not known, with its prior.
+    pub price: f64,
 }
 
 impl Scanned {
@@ -178,8 +180,9 @@ pub(super) fn scan_some(
     let mut best_curve: Option<(usize, f64)> = None;
     let mut first = Vec::new();
     for (number, (laws, curve)) in by_site.into_iter().enumerate() {
-        let prior = prior(places, all[number].len());
-        first.extend(laws.into_iter().map(|(choice, posterior)| (choice, posterior, prior)));
+        let even = prior(places, all[number].len());
+        let prior = |choice: &Choice| even + sites[number].share(choice.form).ln();
+        first.extend(laws.into_iter().map(|(choice, posterior)| (choice, posterior, prior(&choice))));
         if let Some(curve) = curve.filter(|curve| best_curve.is_none_or(|(_, best)| *curve > best)) {
             best_curve = Some((number, curve));
         }
@@ -210,21 +213,17 @@ pub(super) fn scan_some(
             let (choice, at) = at_point(choice, &peak.at);
             let (mean, sd) = peak.moments(0);
             let posterior = Posterior::normal(mean, sd, (low, high));
-            return Scanned {
-                choice,
-                posterior,
-                at,
-                log_odds: peak.log_evidence + prior,
-                also: Vec::new(),
-                peak: Some(peak),
-            };
+            let log_odds = peak.log_evidence + prior;
+            let price = peak.highest - log_odds;
+            return Scanned { choice, posterior, at, log_odds, price, also: Vec::new(), peak: Some(peak) };
         }
         if closer[k] {
             posterior.refine(&|us| evidence(choice, us));
         }
         let log_odds = posterior.log_evidence() + prior;
         let at = middle(choice, &posterior);
-        Scanned { choice, posterior, at, log_odds, also: Vec::new(), peak: None }
+        let price = posterior.best().1 - log_odds;
+        Scanned { choice, posterior, at, log_odds, price, also: Vec::new(), peak: None }
     });
     laws.retain(|law| law.log_odds > f64::NEG_INFINITY);
     laws.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));

@@ -61,8 +61,12 @@ pub struct Site {
     pub courses: Vec<Course>,
     /// Forms that have a meaning there.
     pub forms: &'static [Form],
+    /// Those of them that are rare there: a solid part gives way as what holds it does, but seldom.
+    pub rare: &'static [Form],
 }
 
+/// What a rare form's prior is beside that of another.
+const RARE: f64 = 0.2;
 /// Values of a variable that differ by less than this share of its range are the same.
 const SAME: f64 = 1e-6;
 
@@ -79,7 +83,23 @@ impl Site {
         forms: &'static [Form],
     ) -> Site {
         let (moves, courses) = (vec![0.0; values.len()], Vec::new());
-        Site { location, result, variable, directions, values, recorded: None, moves, courses, forms }
+        Site {
+            location,
+            result,
+            variable,
+            directions,
+            values,
+            recorded: None,
+            moves,
+            courses,
+            forms,
+            rare: &[],
+        }
+    }
+
+    /// What the prior of a form is there beside that of one that is not rare.
+    pub fn share(&self, form: Form) -> f64 {
+        if self.rare.contains(&form) { RARE } else { 1.0 }
     }
 
     /// Data that the law concerns.

@@ -28,6 +28,7 @@ fn site(_: &DVector<f64>) -> Vec<Site> {
         moves: vec![1.0; COUNT],
         courses: Vec::new(),
         forms: &Form::ALL,
+        rare: &[],
     }]
 }
 
@@ -128,25 +129,27 @@ fn a_curve_that_says_no_more_than_the_law_is_no_rival() {
     }
 }
 
-/// What a body does that warms through, a reading a minute: with its time constant, however much
-/// longer than a minute that is.
-#[test]
-fn what_lags_behind_a_temperature_has_its_time() {
-    const TIME: f64 = 700.0;
+/// What is made of a body that warms through, read once a minute, with noise of 1: it follows the
+/// temperature, each part of it (size, time constant) in its own time.
+fn warmed(seed: u64, temperature: &dyn Fn(f64) -> f64, parts: &[(f64, f64)]) -> Law {
     let minute = |k: usize| 60.0 * k as f64;
-    let temperature = |t: f64| 3.0 + 2.0 * (t / 410.0).sin() + 1.2 * (t / 173.0 + 0.4).cos();
-    // by the differential equation, in steps of a second
-    let mut lagged = vec![temperature(0.0)];
-    for k in 1..COUNT {
-        let seconds = (0..60).map(|s| minute(k - 1) + f64::from(s) + 0.5);
-        let last = seconds.fold(lagged[k - 1], |own, t| own + (temperature(t) - own) / TIME);
-        lagged.push(last);
+    let mut lags = vec![0.0; COUNT];
+    for (size, time) in parts {
+        let start = temperature(0.0);
+        let mut own = start;
+        // by the differential equation, in steps of a second; what nobody read goes evenly
+        for (k, lag) in lags.iter_mut().enumerate().skip(1) {
+            let [before, now] = [k - 1, k].map(|k| temperature(minute(k)));
+            let seconds = (0..60).map(|s| before + (now - before) * (f64::from(s) + 0.5) / 60.0);
+            own = seconds.fold(own, |own, there| own + (there - own) / time);
+            *lag += size * (own - start);
+        }
     }
     let mut model = Columns::new(COUNT);
     let wave = |row: usize, k: usize| (std::f64::consts::PI * k as f64 * row as f64 / COUNT as f64).cos();
     model.add("curve", "time", DMatrix::from_fn(COUNT, 6, wave), true);
-    let mut random = Random::seeded(11, 0);
-    let residual = lagged.iter().map(|own| 12.0 * (own - lagged[0]) + random.normal());
+    let mut random = Random::seeded(seed, 0);
+    let residual = lags.iter().map(|own| own + random.normal());
     let evidence = Evidence {
         replicate_group: (0..COUNT).collect(),
         fold: (0..COUNT).map(|row| row / LEVELS).collect(),
@@ -160,11 +163,51 @@ fn what_lags_behind_a_temperature_has_its_time() {
         let [own] = site(&DVector::zeros(0)).try_into().unwrap();
         vec![Site { values, moves: Vec::new(), courses: vec![course], forms: Form::FROM_ANYWHERE, ..own }]
     };
-    let law = propose(&model, &diagnose(&model, &evidence), &sites).unwrap().law.unwrap();
+    propose(&model, &diagnose(&model, &evidence), &sites).unwrap().law.unwrap()
+}
+
+/// The time constant of what lags, s.
+fn time_constant(law: &Law) -> Constant {
     let (what, tau) = law.constant.clone().unwrap();
     assert_eq!((law.memory, what), (Memory::Lagged, FormConstant::Lag));
-    assert!(tau.low < TIME && TIME < tau.high && tau.high < 1.3 * tau.low, "{tau:?}");
+    tau
+}
+
+/// With its time constant, however much longer than a minute that is.
+#[test]
+fn what_lags_behind_a_temperature_has_its_time() {
+    let law =
+        warmed(11, &|t| 3.0 + 2.0 * (t / 410.0).sin() + 1.2 * (t / 173.0 + 0.4).cos(), &[(12.0, 700.0)]);
+    let tau = time_constant(&law);
+    assert!(tau.low < 700.0 && 700.0 < tau.high && tau.high < 1.3 * tau.low, "{tau:?}");
     assert!((law.amplitudes[0].value / 12.0 - 1.0).abs() < 0.1, "{:?}", law.amplitudes);
+}
+
+/// Two parts that warm through against each other are two laws, which neither alone is.
+#[test]
+fn two_lags_are_two_laws() {
+    let temperature = |t: f64| 3.0 + 2.0 * (t / 410.0).sin() + 1.2 * (t / 173.0 + 0.4).cos();
+    let mut held = [0; 2];
+    for seed in 11..17 {
+        let law = warmed(seed, &temperature, &[(30.0, 120.0), (-40.0, 700.0)]);
+        let second = &law.second.as_ref().unwrap().law;
+        let mut both = [time_constant(&law), time_constant(second)];
+        both.sort_by(|a, b| a.value.total_cmp(&b.value));
+        for (k, (tau, truth)) in both.iter().zip([120.0, 700.0]).enumerate() {
+            held[k] += usize::from(tau.low < truth && truth < tau.high);
+            assert!(tau.high < 2.0 * tau.low, "{tau:?} for {truth}");
+        }
+    }
+    assert!(held.iter().all(|held| *held >= 5), "{held:?} of 6");
+}
+
+/// A lag three times as long as the recording is known as a rate alone: its time has a lower end.
+#[test]
+fn a_lag_that_is_longer_than_its_recording_has_no_upper_end() {
+    let law = warmed(11, &|t| 3.0 + 2.0 * (t / 410.0).sin() + t / 600.0, &[(30.0, 10800.0)]);
+    let tau = time_constant(&law);
+    assert_eq!(tau.open, Some(OpenEnd::High));
+    assert!(tau.low < 10800.0 && 10800.0 < tau.high && tau.low > 1000.0, "{tau:?}");
 }
 
 /// Half again beyond the data the truth is as near as a law says of itself, by two standard
@@ -209,6 +252,20 @@ fn a_law_is_repeated_by_what_does_the_same_there() {
     assert!(!law.repeats(&elsewhere) && !law.repeats(&form));
 }
 
+/// What bends a little over one number and what bends a little over it again are one curve; a wave
+/// beside it is a law of its own, and so is what acts elsewhere.
+#[test]
+fn two_that_bend_alike_are_one_curve() {
+    let law = law_of(1, |f| 15.0 * (f / 12.0).powf(0.5));
+    let bent = Law { form: Form::Power, memory: Memory::None, ..law };
+    let again = Law { form: Form::Approach, ..bent.clone() };
+    assert!(bent.is_of_curve_with(&again));
+    assert!(!bent.is_of_curve_with(&Law { form: Form::Harmonic, ..again.clone() }));
+    let mut elsewhere = again;
+    elsewhere.site.directions[0].1[..30].iter_mut().for_each(|weight| *weight = 0.0);
+    assert!(!bent.is_of_curve_with(&elsewhere));
+}
+
 #[test]
 fn of_noise_and_of_what_is_explained_there_is_no_law() {
     for seed in 0..20 {
@@ -231,4 +288,39 @@ fn what_parts_from_its_rivals_beyond_the_data_is_said_to() {
     let difference = |f: f64| law.at(0, f) - rival.at(0, f);
     let bend = |f: f64| difference(f - 1.0) - 2.0 * difference(f) + difference(f + 1.0);
     assert!((2..=11).all(|f| bend(f64::from(f)).abs() < 2.0 * law.noise), "{next:?}");
+}
+
+/// Of places that do the same to the data the usual one comes first, and the rare one is said.
+#[test]
+fn what_is_rare_comes_after_what_is_usual() {
+    let two = |rare: [&'static [Form]; 2]| {
+        let [own] = site(&DVector::zeros(0)).try_into().unwrap();
+        let [first, second] = [Part::Root, Part::Bend].map(Location::Part);
+        vec![
+            Site { location: first, rare: rare[0], ..own.clone() },
+            Site { location: second, rare: rare[1], ..own },
+        ]
+    };
+    let mut model = Columns::new(COUNT);
+    let wave = |row: usize, k: usize| (std::f64::consts::PI * k as f64 * (load(row) - 1.0) / 11.0).cos();
+    model.add("curve", "load", DMatrix::from_fn(COUNT, 6, wave), true);
+    let mut random = Random::seeded(3, 0);
+    let residual = (0..COUNT).map(|row| 6.0 * (load(row) - 7.3).max(0.0) + random.normal());
+    let evidence = Evidence {
+        replicate_group: (0..COUNT).map(|row| row % LEVELS).collect(),
+        fold: (0..COUNT).map(|row| row / LEVELS).collect(),
+        ..Evidence::new(DVector::from_iterator(COUNT, residual))
+    };
+    let diagnosis = diagnose(&model, &evidence);
+    for (rare, usual) in [(0, Part::Bend), (1, Part::Root)] {
+        let mut of_sites: [&'static [Form]; 2] = [&[], &[]];
+        of_sites[rare] = &Form::ALL;
+        let law = propose(&model, &diagnosis, &|_| two(of_sites)).unwrap().law.unwrap();
+        assert_eq!(law.site.location, Location::Part(usual));
+        assert!(
+            law.rivals
+                .iter()
+                .any(|rival| rival.form == law.form && rival.site.location != Location::Part(usual))
+        );
+    }
 }

@@ -8,7 +8,7 @@ use self::expression::{Expression, expression};
 use super::lengths::um;
 use super::place::place;
 use super::subject::{LawNote, LawSubject};
-use crate::inference::law::{Constant, Law, LawRival, Memory, Proposed, Refusal, Site};
+use crate::inference::law::{Constant, Law, LawRival, Memory, OpenEnd, Proposed, Refusal, Site};
 use crate::inference::{Location, Quantity, WrittenTo};
 use crate::report::pictures::diagnosis::{LawPanel, law_picture};
 use crate::report::scale::superscript;
@@ -128,6 +128,7 @@ fn constant(constant: &Constant) -> Value {
         "lo": constant.low,
         "hi": constant.high,
         "also": constant.also,
+        "open": constant.open.map(|end| if end == OpenEnd::High { "hi" } else { "lo" }),
     })
 }
 
@@ -155,6 +156,11 @@ fn at(site: &Site) -> String {
 
 fn quantity(constant: &Constant) -> String {
     let Constant { value, low, high, unit, .. } = constant;
+    match constant.open {
+        Some(OpenEnd::High) => return format!("{} or more", with_unit(significant(*low, 3), unit)),
+        Some(OpenEnd::Low) => return format!("{} or less", with_unit(significant(*high, 3), unit)),
+        None => {}
+    }
     if constant.also.is_empty() {
         return Quantity { value: *value, low: *low, high: *high }.with_unit(unit);
     }
@@ -364,8 +370,8 @@ fn table(law: &Law, name: &str) -> Table {
             own.symbol.clone(),
             own.name.clone(),
             show(own.value),
-            show(own.low),
-            show(own.high),
+            if own.open == Some(OpenEnd::Low) { String::new() } else { show(own.low) },
+            if own.open == Some(OpenEnd::High) { String::new() } else { show(own.high) },
             unit,
         ]);
     }

@@ -14,6 +14,8 @@ pub enum RodLawPlace {
     Clamp,
     /// The rod's root, at the flange.
     Root,
+    /// The bend between the pipes, in its middle.
+    Bend,
     /// The slide that guides the load.
     Slide,
     /// The sensor of an axis: `dy`.
@@ -24,10 +26,11 @@ pub enum RodLawPlace {
 
 impl RodLawPlace {
     /// The places that every rod has; its joints are places too.
-    pub const OF_EVERY_ROD: [RodLawPlace; 7] = [
+    pub const OF_EVERY_ROD: [RodLawPlace; 8] = [
         RodLawPlace::Rod,
         RodLawPlace::Clamp,
         RodLawPlace::Root,
+        RodLawPlace::Bend,
         RodLawPlace::Slide,
         RodLawPlace::Sensor(Axis::X),
         RodLawPlace::Sensor(Axis::Y),
@@ -44,7 +47,7 @@ impl RodLawPlace {
     /// slide and sensors stays with the rig.
     pub fn is_of_rod(&self) -> bool {
         match self {
-            RodLawPlace::Rod | RodLawPlace::Root | RodLawPlace::Joint(_) => true,
+            RodLawPlace::Rod | RodLawPlace::Root | RodLawPlace::Bend | RodLawPlace::Joint(_) => true,
             RodLawPlace::Clamp | RodLawPlace::Slide | RodLawPlace::Sensor(_) => false,
         }
     }
@@ -52,7 +55,11 @@ impl RodLawPlace {
     /// In sentences: `the root`, `sleeve-a`.
     pub fn description(&self) -> String {
         match self {
-            RodLawPlace::Rod | RodLawPlace::Clamp | RodLawPlace::Root | RodLawPlace::Slide => {
+            RodLawPlace::Rod
+            | RodLawPlace::Clamp
+            | RodLawPlace::Root
+            | RodLawPlace::Bend
+            | RodLawPlace::Slide => {
                 format!("the {self}")
             }
             RodLawPlace::Sensor(_) | RodLawPlace::Joint(_) => self.to_string(),
@@ -67,6 +74,7 @@ impl fmt::Display for RodLawPlace {
             RodLawPlace::Rod => f.write_str("rod"),
             RodLawPlace::Clamp => f.write_str("clamp"),
             RodLawPlace::Root => f.write_str("root"),
+            RodLawPlace::Bend => f.write_str("bend"),
             RodLawPlace::Slide => f.write_str("slide"),
             RodLawPlace::Sensor(axis) => write!(f, "d{axis}"),
             RodLawPlace::Joint(name) => f.write_str(name),

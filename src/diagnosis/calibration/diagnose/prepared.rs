@@ -54,6 +54,24 @@ impl<'c> Prepared<'c> {
         about: Calibration<'c>,
         look: &FirstLook,
     ) -> Result<Prepared<'c>> {
+        Prepared::with_effects(campaign, (calibration, about), look, true)
+    }
+
+    /// The same of a finished calibration with no effect of the library, what has no name alone.
+    pub fn unnamed(
+        campaign: &'c Campaign,
+        calibration: Calibration<'c>,
+        look: &FirstLook,
+    ) -> Result<Prepared<'c>> {
+        Prepared::with_effects(campaign, (calibration.clone(), calibration), look, false)
+    }
+
+    fn with_effects(
+        campaign: &'c Campaign,
+        (calibration, about): (Calibration<'c>, Calibration<'c>),
+        look: &FirstLook,
+        has_names: bool,
+    ) -> Result<Prepared<'c>> {
         let context = Context::new(campaign, &about)?;
         let context = match &look.scatter {
             Some(noise) => context.scattered(&noise.of_group),
@@ -69,7 +87,8 @@ impl<'c> Prepared<'c> {
         };
         let context = context.moved_after(&look.moved_after).turned(&look.turned);
         let evidence = evidence::evidence_of(campaign, &about, &context);
-        let (mut entries, not_testable) = registry::candidates(&context);
+        let (mut entries, not_testable) =
+            if has_names { registry::candidates(&context) } else { (Vec::new(), Vec::new()) };
         entries.extend(nonparametric::all(&context));
         let (terms, absorbed) = LinearTerms::new(entries, &evidence);
         let jacobians = context.configurations.iter().map(|there| there.tip_jacobian.clone());

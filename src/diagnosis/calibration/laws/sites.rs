@@ -26,6 +26,8 @@ const OF_TIME: &[Form] = Form::SINCE_A_START;
 /// From anywhere on: temperature, positions, angles, whose zero is where the encoder has it. Waves
 /// over an angle are the library's (`transmission_error`, `wrist_coupling`).
 const OF_A_LEVEL: &[Form] = Form::FROM_ANYWHERE;
+/// A magnet or a spring beside the base may pull at it by its distance.
+const OF_A_POSITION: &[Form] = Form::OF_A_POSITION;
 /// Where an axis goes as its joint turns.
 const OF_A_BEARING: &[Form] = &[Form::Harmonic];
 /// One factor of a product: the other one's place says it.
@@ -205,7 +207,12 @@ impl Robot<'_> {
         let site = self.of_frame(Part::Base, changed, &|_, k| Vector3::ith(k, 1.0));
         let position = |k: usize| {
             let variable = measure("x", format!("position along {}", AXES[k]), "mm", MM);
-            Site { variable, values: self.values(&|there| there.tip[k]), forms: OF_A_LEVEL, ..site.clone() }
+            Site {
+                variable,
+                values: self.values(&|there| there.tip[k]),
+                forms: OF_A_POSITION,
+                ..site.clone()
+            }
         };
         (0..3).map(position).chain(clocks.iter().map(|clock| clock.over(&site))).collect()
     }
@@ -227,6 +234,7 @@ impl Robot<'_> {
             moves: Vec::new(),
             courses: Vec::new(),
             forms: OF_A_LEVEL,
+            rare: &[],
         }
     }
 
@@ -259,6 +267,7 @@ impl Robot<'_> {
             moves: Vec::new(),
             courses: Vec::new(),
             forms,
+            rare: &[],
         }
     }
 

@@ -29,6 +29,9 @@ pub fn remark(law: &Law) -> Option<String> {
         (Form::Saturation, _, "τ" | "g") => {
             "Growth up to one load is what a part does that comes to a stop there: play with a spring."
         }
+        (Form::PullBelow | Form::PullAbove, ..) => {
+            "The inverse square of a distance is what the pole of a magnet pulls with (Coulomb)."
+        }
         (Form::Threshold, _, "τ" | "g") => {
             "A slope from one load on is what a contact does that opens or closes there."
         }

@@ -7,6 +7,7 @@ use nalgebra::DMatrix;
 
 use super::super::model::Configuration;
 use super::*;
+use crate::diagnosis::Limitation;
 use crate::diagnosis::calibration::laws::sites::sites;
 use crate::inference::law::points::{GrammarPoint, likeness};
 use crate::inference::law::{Constant, Form, Law};
@@ -70,6 +71,26 @@ fn a_hose_that_gets_taut_is_a_threshold() {
         assert!(!Law { form: Form::Step, ..second.clone() }.repeats(law));
         second.adds.rotate_right(30);
         assert!(!second.repeats(law));
+        assert!(with < 0.5 * without, "{without} {with}");
+    });
+}
+
+/// A joint that gives way from a torque on is a law of its torque, and no stiffness that depends on
+/// the load beside play.
+#[test]
+fn a_torque_from_which_on_a_joint_gives_way_is_one_law() {
+    let gives_way = |there: &Configuration| {
+        let torque = there.torque[1];
+        there.tip_jacobian[1] * (12e-6 * torque.signum() * (torque.abs() - 60.0).max(0.0))
+    };
+    concealed(9, &gives_way, |law, (without, with), found| {
+        assert!(found.diagnosis.findings.is_empty());
+        assert!(found.limits.iter().any(|limit| matches!(limit, Limitation::NamesForLaw(..))));
+        assert_eq!(law.site.location.to_string(), "joint 2");
+        assert_eq!(law.site.variable.name, "torque of joint 2");
+        // what the compliance that was calibrated takes up makes a stop of it
+        let (_, corner) = law.constant.as_ref().unwrap();
+        assert!(corner.low < 60.0 && 60.0 < corner.high, "{corner:?}");
         assert!(with < 0.5 * without, "{without} {with}");
     });
 }

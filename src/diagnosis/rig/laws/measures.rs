@@ -60,6 +60,7 @@ pub fn place_in_file(location: &Location) -> Option<RodLawPlace> {
         Location::Part(Part::Rod) => Some(RodLawPlace::Rod),
         Location::Part(Part::Clamp) => Some(RodLawPlace::Clamp),
         Location::Part(Part::Root) => Some(RodLawPlace::Root),
+        Location::Part(Part::Bend) => Some(RodLawPlace::Bend),
         Location::Part(Part::Slide) => Some(RodLawPlace::Slide),
         Location::Channel { channel, .. } => Some(RodLawPlace::Sensor(*channel)),
         Location::Named(joint) => Some(RodLawPlace::named(joint)),

@@ -4,7 +4,8 @@
 //! |---|---|---|
 //! | rod | the load F that the rod follows, y = C·(F + ΔF) | load |
 //! | clamp | displacement along the load | load |
-//! | root, declared joints | turn θ about the moment there, y = (θ·M/\|M\|) × lever | moment |
+//! | rod | the load, by friction | speed of loading |
+//! | root, bend, declared joints | turn θ about the moment there, y = (θ·M/\|M\|) × lever | moment |
 //! | rod | the deflection, by a share of it | load with its sign, load before, temperature, time, order |
 //! | slide | the share of the last change of the load that shows | time since |
 //! | sensor | what a channel shows | what it should show |
@@ -26,9 +27,20 @@ use crate::spatial::Axis;
 use crate::units::UM;
 
 /// From zero on, of what is measured or hung: loads, readings. They may ripple.
-const OF_A_LOAD: &[Form] = &Form::ALL;
+const OF_A_LOAD: &[Form] = Form::FROM_ZERO;
 /// Of what gives way under them.
 const OF_A_CONTACT: &[Form] = Form::GIVING_WAY;
+/// Of what comes to rest or to a stop: parts do, sensors seldom.
+const OF_A_STOP: &[Form] = &[
+    Form::Power,
+    Form::PowerAfterGap,
+    Form::Saturation,
+    Form::Rounded,
+    Form::Threshold,
+    Form::Step,
+    Form::Approach,
+    Form::Logarithm,
+];
 /// With two signs, of which each may be another case.
 const OF_A_SIDE: &[Form] = Form::FROM_ANYWHERE;
 /// From the first reading on: time, order.
@@ -37,8 +49,14 @@ const OF_TIME: &[Form] = Form::SINCE_A_START;
 const OF_A_LEVEL: &[Form] = OF_A_SIDE;
 /// Of two signs, and of several decades.
 const OF_A_SPEED: &[Form] = &[Form::Approach, Form::Logarithm, Form::Power, Form::Polynomial(1)];
+/// Friction: with the sign of the speed.
+const OF_A_FRICTION: &[Form] =
+    &[Form::Settling, Form::Approach, Form::Logarithm, Form::Power, Form::Polynomial(1)];
 /// Times since: they fade.
 const FADING: &[Form] = &[Form::Approach, Form::Decay, Form::Logarithm, Form::Power, Form::Polynomial(1)];
+
+/// Pipes that turn by less are one, rad.
+const LEAST_TURN: f64 = 1e-3;
 
 /// All places, given what is known to change each datum, m. Nothing where the displacement was
 /// imposed.
@@ -53,12 +71,9 @@ pub fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
     let slopes = slopes(data, &bare, change);
     let loads: Vec<f64> = data.iter().map(|d| d.load).collect();
     let recording = Recording { data, moves: moves(data), by_load: courses(data, |_| 0.0) };
-    let mut sites = vec![recording.of_load(
-        (Location::Part(Part::Rod), measure("ΔF", "effective load", "N", 1.0)),
-        LawVariable::Load,
-        (slopes, loads.clone()),
-        OF_A_LOAD,
-    )];
+    let newton = || (Location::Part(Part::Rod), measure("ΔF", "effective load", "N", 1.0));
+    let of_load = (slopes.clone(), loads.clone());
+    let mut sites = vec![recording.of_load(newton(), LawVariable::Load, of_load, OF_A_LOAD)];
     let sign = |d: &Datum| if d.channel == d.direction.axis { f64::from(d.direction.sign) } else { 0.0 };
     sites.push(recording.of_load(
         (Location::Part(Part::Clamp), measure("Δu", "displacement along the load", "µm", UM)),
@@ -68,18 +83,23 @@ pub fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
     ));
     if let (Some(rod), Body::Rod(_)) = (&model.rod, &model.body) {
         let declared = rod.joints.iter().map(|joint| (Location::Named(joint.name.clone()), joint.station));
-        let places = std::iter::once((Location::Part(Part::Root), 0.0)).chain(declared);
+        let bend = (rod.turn().abs() > LEAST_TURN).then(|| (Location::Part(Part::Bend), rod.bend_middle()));
+        let places = std::iter::once((Location::Part(Part::Root), 0.0)).chain(bend).chain(declared);
         for (location, station) in places {
             let (weights, moments) = data.iter().map(|d| turned(d, rod, station)).unzip();
-            sites.push(recording.of_load(
-                (location, measure("Δθ", "turn", "µrad", 1e-6)),
-                LawVariable::Moment,
-                (weights, moments),
-                OF_A_CONTACT,
-            ));
+            // a bend is of one piece
+            let rare = if location == Location::Part(Part::Bend) { OF_A_CONTACT } else { &[] };
+            let turn = (location, measure("Δθ", "turn", "µrad", 1e-6));
+            let site = recording.of_load(turn, LawVariable::Moment, (weights, moments), OF_A_CONTACT);
+            sites.push(Site { rare, ..site });
         }
     }
     sites.extend(recording.shares(&known));
+    if let Some(speeds) = Before::of(data).speeds(data) {
+        let ((location, result), speed) = (newton(), SiteVariable::OfFile(LawVariable::LoadingSpeed));
+        let directions = vec![(String::new(), slopes)];
+        sites.push(Site::new(location, result, speed.measure(), directions, speeds, OF_A_FRICTION));
+    }
     for channel in Axis::ALL {
         let weight = |d: &Datum| f64::from(u8::from(d.channel == channel));
         let site = Site {
@@ -92,6 +112,7 @@ pub fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
             moves: Vec::new(),
             courses: Vec::new(),
             forms: OF_A_LOAD,
+            rare: OF_A_STOP,
         };
         sites.push(site);
     }
@@ -205,6 +226,7 @@ impl Recording<'_> {
             courses,
             // nothing that gives way does so in waves
             forms,
+            rare: &[],
         }
     }
 
@@ -222,6 +244,7 @@ impl Recording<'_> {
             moves: Vec::new(),
             courses: Vec::new(),
             forms,
+            rare: &[],
         };
         let own = || known.to_vec();
         let mut sites = Vec::new();
@@ -274,6 +297,7 @@ impl Recording<'_> {
                 moves: Vec::new(),
                 courses: common.courses,
                 forms: common.forms,
+                rare: &[],
             }
         };
         self.common().into_iter().map(site_of).collect()

@@ -49,6 +49,9 @@ pub fn remark(law: &Law) -> Option<String> {
         (Form::Harmonic, _, "y") => {
             "A wave over the reading is what an encoder or an interferometer adds when it interpolates."
         }
+        (Form::Pull, ..) => {
+            "The inverse square of a distance is what the pole of a magnet pulls with (Coulomb)."
+        }
         (Form::Threshold, _, "F" | "M") => {
             "A slope from one load on is what a contact does that opens or closes there."
         }

@@ -4,7 +4,7 @@ use super::measures::{SiteVariable, place_in_file};
 use super::remembered::in_file;
 use crate::diagnosis::law_formula::{constants, formula, range, source};
 use crate::inference::law::Law;
-use crate::rod::{LawVariable, RodLaw};
+use crate::rod::{LawVariable, RodLaw, RodLawPlace};
 
 /// The law as the rod's file holds it; `None` for one that only this recording has: over its time,
 /// its order, its temperatures.
@@ -13,6 +13,10 @@ pub fn written(law: &Law, from: &str) -> Option<RodLaw> {
     let is_its =
         |own: &LawVariable| own.is_at(&place) && SiteVariable::OfFile(*own).measure() == law.site.variable;
     let variable = LawVariable::ALL.into_iter().find(is_its)?;
+    // of the rod's file a newton depends on the load alone, and a share on all else
+    if place == RodLawPlace::Rod && (variable == LawVariable::Load) != (law.site.result.unit == "N") {
+        return None;
+    }
     // functions of a variable with two signs are odd
     let formula = formula(law, variable.symbol(), variable.has_both_signs(), 0);
     let mut written = RodLaw::new(place, variable, formula, constants(law), range(law)).ok()?;
@@ -38,19 +42,26 @@ mod tests {
             low: value - 0.196,
             high: value + 0.196,
             also: Vec::new(),
+            open: None,
         };
         let largest = 250.0f64;
         for form in Form::ALL {
             // amplitudes are of the scaled variable
             let amplitudes = [30.0, -12.0, 5.0][..form.count()].to_vec();
-            let s = if form == Form::Harmonic { 2.5 } else { 0.4 };
+            let s = match form {
+                Form::Harmonic => 2.5,
+                Form::Pull | Form::PullAbove => 1.4,
+                Form::PullBelow => -0.9,
+                _ => 0.4,
+            };
             let power = |k: usize| match form {
                 Form::Polynomial(_) => k as i32 + 1,
                 Form::Threshold => 1,
+                Form::Pull | Form::PullBelow | Form::PullAbove => -2,
                 _ => 0,
             };
             let symbols: &[&str] = match form {
-                Form::Threshold => &["k"],
+                Form::Threshold | Form::Pull | Form::PullBelow | Form::PullAbove => &["k"],
                 Form::Harmonic | Form::Settling => &["a", "b"],
                 Form::PowerAfterGap => &["a", "g"],
                 Form::Polynomial(_) => &["c1", "c2", "c3"],
@@ -75,6 +86,7 @@ mod tests {
                 moves: Vec::new(),
                 courses: Vec::new(),
                 forms: &Form::ALL,
+                rare: &[],
             };
             let si: Vec<f64> = amplitudes.iter().map(|a| a * 1e-6).collect();
             let law = Law::of_numbers(site, form, (constants, shape), (si, s));

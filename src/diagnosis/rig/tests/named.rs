@@ -187,6 +187,29 @@ fn a_root_that_gives_way_by_a_power_is_one_law_and_no_names() {
     assert!(exponent.low < 0.6 && 0.6 < exponent.high, "{exponent:?}");
 }
 
+/// A rod whose deflection grows with F^1.4 beside what is proportional is none whose stiffness
+/// depends on the square of the load; one with F³ is.
+#[test]
+fn an_exponent_that_no_name_has_is_a_law() {
+    let (rod, rows) = (rod(""), bench(4));
+    let linear = compliance(&rod);
+    let diagnosed = |share: f64, exponent: f64| {
+        let shown = |index: usize| {
+            let row: &Bench = &rows[index];
+            let force = Vector3::ith(row.axis.index(), row.load);
+            linear * force * (1.0 + share * (row.load / 12.0).powf(exponent - 1.0))
+        };
+        diagnose(&scattered(&rows, |_| 20.0, shown, false, 1.5), Some(&rod)).unwrap()
+    };
+    let found = diagnosed(0.2, 1.4);
+    assert_eq!(names(&found), Vec::<&str>::new());
+    let law = found.law.as_ref().unwrap().law.as_ref().unwrap();
+    let (_, exponent) = law.constant.as_ref().unwrap();
+    assert!(exponent.low < 1.4 && 1.4 < exponent.high, "{exponent:?}");
+    assert!(found.limits.iter().any(|limit| matches!(limit, Limitation::NamesForLaw(..))));
+    assert_eq!(names(&diagnosed(0.2, 3.0)), ["nonlinear_stiffness"]);
+}
+
 /// Two channels that wander off late in the recording, by 11 and by 5 µm within a tenth of it: no
 /// slip at a reading of its own for each.
 #[test]

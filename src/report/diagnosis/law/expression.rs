@@ -32,6 +32,10 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         Form::PowerAfterGap if is_signed => format!("{sign}(a·({size}/{scale})^p + g)"),
         Form::PowerAfterGap => format!("a·({size}/{scale})^p + g"),
         Form::Saturation => format!("a·{sign}min({size}/{corner}, 1)"),
+        Form::Rounded => format!("a·tanh({x}/{corner})"),
+        Form::Pull if is_signed => format!("{sign}k·(1/({corner} − {size})² − 1/{corner}²)"),
+        Form::Pull => format!("k·(1/({corner} − {x})² − 1/{corner}²)"),
+        Form::PullBelow | Form::PullAbove => format!("k/({x} − {corner})²"),
         Form::Threshold => format!("k·max({x} − {corner}, 0)"),
         Form::Step => format!("a·[{x} > {corner}]"),
         Form::Approach => format!("a·{sign}(1 − exp(−{size}/{corner}))"),
@@ -74,6 +78,16 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
             if is_signed { format!(r"{sign}\left({power}\right)") } else { power }
         }
         Form::Saturation => format!(r"a{sign}\,\min\left(\frac{{{size}}}{{{corner}}}, 1\right)"),
+        Form::Rounded => format!(r"a\,\tanh\frac{{{x}}}{{{corner}}}"),
+        Form::Pull => {
+            let pull = format!(
+                r"\frac{{1}}{{\left({corner} - {size}\right)^2}} - \frac{{1}}{{\left({corner}\right)^2}}"
+            );
+            format!(r"k{sign}\left({pull}\right)")
+        }
+        Form::PullBelow | Form::PullAbove => {
+            format!(r"\frac{{k}}{{\left({x} - {corner}\right)^2}}")
+        }
         Form::Threshold => format!(r"k\,\max({x} - {corner}, 0)"),
         Form::Step => format!(r"a\,[{x} > {corner}]"),
         Form::Approach => format!(r"a{sign}\left(1 - e^{{-{size}/{corner}}}\right)"),

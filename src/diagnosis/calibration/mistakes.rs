@@ -19,6 +19,7 @@ mod columns;
 mod distance;
 mod draft;
 mod found;
+mod frozen;
 mod held;
 mod may_be_meant;
 mod motion;
@@ -32,7 +33,7 @@ mod tests;
 mod typed;
 
 use self::columns::Silent;
-use self::draft::Draft;
+use self::draft::{Draft, DraftChange};
 use self::held::{held, mostly_held, without_held};
 use self::may_be_meant::add_rivals;
 use self::motion::{beside_found, has_moved, measure_moves};
@@ -338,6 +339,15 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Option
         search.guess_weight = NO_GUESS;
         result = search.found();
     }
+    let frozen = match is_sure {
+        true => Vec::new(),
+        false => search.frozen(&search.draft, result.as_ref().map(|(_, best, _)| best)),
+    };
+    if !frozen.is_empty() {
+        let rows = frozen.iter().flat_map(|frozen| frozen.rows.iter().copied()).collect();
+        search.draft.apply(&DraftChange::Without(rows));
+        result = search.found();
+    }
     let has_failed = result.as_ref().is_none_or(|(_, best, _)| search.has_failed(best));
     for silent in silent.into_iter().filter(|silent| has_failed || !silent.only_if_failed) {
         mended.has_data = false;
@@ -350,6 +360,7 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Option
     }
     let mut slips = search.held_slips(&campaign.measurements, (&best, &whole), &held);
     slips.extend(search.slips(&best, &campaign.measurements));
+    slips.extend(frozen.iter().map(|frozen| frozen.slip(&search, &campaign.measurements)));
     for slip in slips {
         best.steps.push(SearchStep::Slip(slip.change.clone()));
         mended.add_slip(slip);

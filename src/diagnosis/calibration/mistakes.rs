@@ -15,6 +15,7 @@
 //! A mistake that these poses cannot tell from another one names it as a rival; one that they hide
 //! altogether (the zero of the first joint without a stated base) is not named.
 
+mod another_rod;
 mod columns;
 mod distance;
 mod draft;
@@ -32,6 +33,7 @@ mod slips;
 mod tests;
 mod typed;
 
+use self::another_rod::ComparedRods;
 use self::columns::Silent;
 use self::draft::{Draft, DraftChange};
 use self::held::{held, mostly_held, without_held};
@@ -88,6 +90,8 @@ pub struct Mended {
     is_rod_rewritten: bool,
     /// Rods that may have been meant, by their files.
     rods: Vec<(String, Rod)>,
+    /// How probable the poses are with those that are as long; `None` where nobody asked.
+    compared: Option<ComparedRods>,
     /// How it is calibrated.
     options: Options,
     /// Errors of a calibration on what was recorded; `None` where nothing was found.
@@ -125,7 +129,9 @@ pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Opti
         let recorded = calibrate(campaign, mode, options).ok();
         mended.recorded = recorded.map(|calibration| Summary::of(&calibration.residuals()));
     }
-    Ok(mended.confirmed(campaign, mode))
+    let mut mended = mended.confirmed(campaign, mode);
+    mended.compare_rods();
+    Ok(mended)
 }
 
 /// Each mistake that `campaign` seems to hold, for those who do not ask for a diagnosis: `likely
@@ -169,6 +175,7 @@ impl Mended {
             has_data: true,
             is_rod_rewritten: false,
             rods: Vec::new(),
+            compared: None,
             options: *options,
             recorded: None,
         }
@@ -196,7 +203,8 @@ impl Mended {
     pub fn diagnose(&self) -> Result<CalibrationDiagnosis<'_>> {
         let calibration = calibrate(&self.campaign, self.mode, &self.options)?;
         let mut found = diagnose_calibrated(&self.campaign, calibration)?;
-        add_rivals(&self.campaign, &self.rods, &self.options, &mut found);
+        add_rivals(&self.campaign, self.compared.as_ref(), &self.options, &mut found);
+        found.limits.extend(self.compared.iter().flat_map(|rods| rods.limits(&found.diagnosis)));
         let has_failed = found.is_implausible();
         let diagnosis = &mut found.diagnosis;
         if has_failed || !self.has_data {

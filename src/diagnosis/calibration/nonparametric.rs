@@ -148,7 +148,12 @@ fn zero(context: &Context, joint: usize) -> Option<Entry> {
     (lever > 0.0).then(|| curve(label, follows, Some(Variable::Order), parameters))
 }
 
+/// What depends on where the ball is. A socket's place is free, and takes all of that; where the
+/// ball is beside it is the scatter itself, which follows itself.
 fn workspace(context: &Context) -> Option<Entry> {
+    if context.has_sockets() {
+        return None;
+    }
     let of_axis = |axis: usize| {
         scaled(
             &context.configurations.iter().map(|configuration| configuration.tip[axis]).collect::<Vec<_>>(),

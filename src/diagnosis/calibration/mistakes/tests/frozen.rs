@@ -18,7 +18,8 @@ fn stuck(campaign: &Campaign, joints: &[usize], rows: Range<usize>) -> Campaign 
 
 #[test]
 fn a_joint_that_stood_still_in_the_file_alone() {
-    for (right, joint, rows) in [(tracked(60, 7), 4, 21..24), (tracked(60, 7), 1, 21..46), (tx90(), 3, 30..45)]
+    for (right, joint, rows) in
+        [(tracked(60, 7), 4, 21..24), (tracked(60, 7), 1, 21..46), (tx90(), 3, 30..45)]
     {
         let wrong = stuck(&right, &[joint], rows.clone());
         let place = format!("q{}_deg, pose {} to pose {}", joint + 1, rows.start + 1, rows.end);

@@ -1,0 +1,132 @@
+//! Another rod of the same folder, as long as the stated one and of another stiffness or weight.
+//!
+//! A rod of steel for one of carbon bends by a few hundredths of a millimetre otherwise, which the
+//! drives of a calibration take up, or noise that is common to poses in a row: the search for
+//! mistakes sees nothing there. So the whole explanation is compared, ln of the probability of the
+//! poses with each rod and all that explains them best about it:
+//!
+//! ```text
+//! ln odds = ln p(poses | other rod) − ln p(poses | stated rod)
+//! ```
+//!
+//! From odds of 1000 on the other file is meant. Within that, and down to 1:20, these poses do not
+//! tell which of the two it was, and that is said.
+
+use super::Mended;
+use super::may_be_meant::log_probability;
+use super::search::{ALIKE, ODDS};
+use crate::calibration::campaign::Campaign;
+use crate::calibration::{Mode, Summary, calibrate};
+use crate::diagnosis::Limitation;
+use crate::diagnosis::calibration::effects::mistakes::ROD_MISTAKE;
+use crate::inference::{Diagnosis, Key, Location, Rival};
+use crate::rod::Rod;
+
+/// Tips that are farther apart, as a share of the rod's length, are seen as such.
+const ANOTHER_TIP: f64 = 0.03;
+/// So many rods are compared, of so many poses at most.
+const MOST: usize = 4;
+const MOST_ROWS: usize = 2000;
+
+/// How probable the poses are with other rods.
+#[derive(Debug, Clone)]
+pub(super) struct ComparedRods {
+    /// Ln with the stated rod.
+    known: f64,
+    /// Files, and ln with each.
+    pub others: Vec<(String, f64)>,
+}
+
+/// A campaign with another rod, and how its deflection is known then.
+pub(super) fn with_rod(campaign: &Campaign, mode: Mode, (file, rod): &(String, Rod)) -> (Campaign, Mode) {
+    let mut with =
+        Campaign { rod: Some(rod.clone()), rod_file: Some(file.clone()), readings: None, ..campaign.clone() };
+    if !with.tool_is_given {
+        with.tool = rod.tip();
+    }
+    // the readings of a rig are those of the rod that was on it
+    (with, if mode == Mode::Meas { Mode::Fea } else { mode })
+}
+
+/// The rods whose tips are nearly that of the campaign's.
+pub(super) fn near<'r>(
+    campaign: &Campaign,
+    rods: &'r [(String, Rod)],
+) -> impl Iterator<Item = &'r (String, Rod)> {
+    let tip = campaign.rod.as_ref().map(Rod::tip);
+    let is_near = move |rod: &Rod| tip.is_some_and(|tip| (rod.tip() - tip).norm() < ANOTHER_TIP * tip.norm());
+    rods.iter().filter(move |(_, rod)| is_near(rod)).take(MOST)
+}
+
+impl Mended {
+    /// Has the campaign be one of another rod, where the poses are a thousand times more probable
+    /// with it.
+    pub(super) fn compare_rods(&mut self) {
+        let is_named = self.found.iter().any(|finding| *finding.effect == ROD_MISTAKE);
+        let is_asked = self.has_data && !is_named && !self.is_rod_rewritten;
+        if !is_asked || self.campaign.measurements.len() > MOST_ROWS {
+            return;
+        }
+        let rods: Vec<(String, Rod)> = near(&self.campaign, &self.rods).cloned().collect();
+        if rods.is_empty() {
+            return;
+        }
+        let Ok(stated) = calibrate(&self.campaign, self.mode, &self.options) else { return };
+        if !stated.is_plausible() {
+            return;
+        }
+        let before = Summary::of(&stated.residuals());
+        let Some(known) = log_probability(&self.campaign, stated) else { return };
+        let mut compared = ComparedRods { known, others: Vec::new() };
+        let mut best: Option<(f64, f64, Campaign, Mode, &(String, Rod))> = None;
+        for rod in &rods {
+            let (with, mode) = with_rod(&self.campaign, self.mode, rod);
+            let Ok(calibration) = calibrate(&with, mode, &self.options) else { continue };
+            let left = Summary::of(&calibration.residuals());
+            let Some(other) = log_probability(&with, calibration) else { continue };
+            compared.others.push((rod.0.clone(), other));
+            if best.as_ref().is_none_or(|(most, ..)| other > *most) {
+                best = Some((other, left.rms, with, mode, rod));
+            }
+        }
+        if let Some((most, left, with, mode, (file, rod))) = best.filter(|best| best.0 - known > ODDS) {
+            let cure = format!("Write rod = \"{file}\"");
+            let why = format!("the poses are those of rod {}", rod.name);
+            self.add(&ROD_MISTAKE, Key::new(file).into(), Vec::new(), (&cure, &why), most - known);
+            let is_alike = |other: &&(String, f64)| other.0 != *file && most - other.1 < ALIKE;
+            let rival = |(file, other): &(String, f64)| {
+                Rival::without_term(&ROD_MISTAKE, Location::key(file), (most - other).exp())
+            };
+            if let Some(finding) = self.found.last_mut() {
+                finding.explains = (before.rms.powi(2) - left.powi(2)).max(0.0).sqrt();
+                finding.rivals = compared.others.iter().filter(is_alike).map(rival).collect();
+            }
+            (self.campaign, self.mode, self.is_changed) = (with, mode, true);
+            self.recorded.get_or_insert(before);
+            // what is left is judged beside this rod
+            compared = ComparedRods { known: most, others: Vec::new() };
+        }
+        self.compared = Some(compared);
+    }
+}
+
+impl ComparedRods {
+    /// The files that stand beside the stated one, and the odds against each; less than 1 where it
+    /// is the more probable one.
+    pub fn alike(&self) -> impl Iterator<Item = (&String, f64)> {
+        let odds = self.others.iter().map(|(file, other)| (file, self.known - other));
+        odds.filter(|(_, against)| *against < ALIKE).map(|(file, against)| (file, against.exp()))
+    }
+
+    /// What is to be said of them beside a diagnosis that names none.
+    pub fn limits(&self, diagnosis: &Diagnosis) -> Vec<Limitation> {
+        let is_said = |file: &str| {
+            let place = Location::key(file);
+            let findings = diagnosis.findings.iter();
+            let mut rivals = findings.flat_map(|finding| &finding.rivals);
+            rivals.any(|rival| *rival.effect == ROD_MISTAKE && rival.location == place)
+        };
+        let open = self.alike().filter(|(file, _)| !is_said(file));
+        open.map(|(file, against)| Limitation::AnotherRod(file.clone(), 1.0 / against)).collect()
+    }
+}

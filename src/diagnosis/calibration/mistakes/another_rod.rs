@@ -16,7 +16,7 @@ use super::Mended;
 use super::may_be_meant::log_probability;
 use super::search::{ALIKE, ODDS};
 use crate::calibration::campaign::Campaign;
-use crate::calibration::{Mode, Summary, calibrate};
+use crate::calibration::{Mode, Options, Summary, calibrate};
 use crate::diagnosis::Limitation;
 use crate::diagnosis::calibration::effects::mistakes::ROD_MISTAKE;
 use crate::inference::{Diagnosis, Key, Location, Rival};
@@ -37,8 +37,34 @@ pub(super) struct ComparedRods {
     pub others: Vec<(String, f64)>,
 }
 
+/// A campaign with another rod.
+struct WithRod<'r> {
+    rod: &'r (String, Rod),
+    campaign: Campaign,
+    mode: Mode,
+    /// Ln of the probability of the poses.
+    log_probability: f64,
+    /// Root mean square of what a calibration leaves, m.
+    left: f64,
+}
+
+impl<'r> WithRod<'r> {
+    fn new(
+        campaign: &Campaign,
+        mode: Mode,
+        rod: &'r (String, Rod),
+        options: &Options,
+    ) -> Option<WithRod<'r>> {
+        let (campaign, mode) = with_rod(campaign, mode, rod);
+        let calibration = calibrate(&campaign, mode, options).ok()?;
+        let left = Summary::of(&calibration.residuals()).rms;
+        let log_probability = log_probability(&campaign, calibration)?;
+        Some(WithRod { rod, campaign, mode, log_probability, left })
+    }
+}
+
 /// A campaign with another rod, and how its deflection is known then.
-pub(super) fn with_rod(campaign: &Campaign, mode: Mode, (file, rod): &(String, Rod)) -> (Campaign, Mode) {
+fn with_rod(campaign: &Campaign, mode: Mode, (file, rod): &(String, Rod)) -> (Campaign, Mode) {
     let mut with =
         Campaign { rod: Some(rod.clone()), rod_file: Some(file.clone()), readings: None, ..campaign.clone() };
     if !with.tool_is_given {
@@ -49,10 +75,7 @@ pub(super) fn with_rod(campaign: &Campaign, mode: Mode, (file, rod): &(String, R
 }
 
 /// The rods whose tips are nearly that of the campaign's.
-pub(super) fn near<'r>(
-    campaign: &Campaign,
-    rods: &'r [(String, Rod)],
-) -> impl Iterator<Item = &'r (String, Rod)> {
+fn near<'r>(campaign: &Campaign, rods: &'r [(String, Rod)]) -> impl Iterator<Item = &'r (String, Rod)> {
     let tip = campaign.rod.as_ref().map(Rod::tip);
     let is_near = move |rod: &Rod| tip.is_some_and(|tip| (rod.tip() - tip).norm() < ANOTHER_TIP * tip.norm());
     rods.iter().filter(move |(_, rod)| is_near(rod)).take(MOST)
@@ -77,19 +100,14 @@ impl Mended {
         }
         let before = Summary::of(&stated.residuals());
         let Some(known) = log_probability(&self.campaign, stated) else { return };
-        let mut compared = ComparedRods { known, others: Vec::new() };
-        let mut best: Option<(f64, f64, Campaign, Mode, &(String, Rod))> = None;
-        for rod in &rods {
-            let (with, mode) = with_rod(&self.campaign, self.mode, rod);
-            let Ok(calibration) = calibrate(&with, mode, &self.options) else { continue };
-            let left = Summary::of(&calibration.residuals());
-            let Some(other) = log_probability(&with, calibration) else { continue };
-            compared.others.push((rod.0.clone(), other));
-            if best.as_ref().is_none_or(|(most, ..)| other > *most) {
-                best = Some((other, left.rms, with, mode, rod));
-            }
-        }
-        if let Some((most, left, with, mode, (file, rod))) = best.filter(|best| best.0 - known > ODDS) {
+        let with = rods.iter().filter_map(|rod| WithRod::new(&self.campaign, self.mode, rod, &self.options));
+        let with: Vec<WithRod> = with.collect();
+        let others = with.iter().map(|with| (with.rod.0.clone(), with.log_probability)).collect();
+        let mut compared = ComparedRods { known, others };
+        let best = with.into_iter().max_by(|a, b| a.log_probability.total_cmp(&b.log_probability));
+        if let Some(best) = best.filter(|best| best.log_probability - known > ODDS) {
+            let (file, rod) = best.rod;
+            let most = best.log_probability;
             let cure = format!("Write rod = \"{file}\"");
             let why = format!("the poses are those of rod {}", rod.name);
             self.add(&ROD_MISTAKE, Key::new(file).into(), Vec::new(), (&cure, &why), most - known);
@@ -98,10 +116,10 @@ impl Mended {
                 Rival::without_term(&ROD_MISTAKE, Location::key(file), (most - other).exp())
             };
             if let Some(finding) = self.found.last_mut() {
-                finding.explains = (before.rms.powi(2) - left.powi(2)).max(0.0).sqrt();
+                finding.explains = (before.rms.powi(2) - best.left.powi(2)).max(0.0).sqrt();
                 finding.rivals = compared.others.iter().filter(is_alike).map(rival).collect();
             }
-            (self.campaign, self.mode, self.is_changed) = (with, mode, true);
+            (self.campaign, self.mode, self.is_changed) = (best.campaign, best.mode, true);
             self.recorded.get_or_insert(before);
             // what is left is judged beside this rod
             compared = ComparedRods { known: most, others: Vec::new() };

@@ -88,7 +88,7 @@ fn stretches(draft: &Draft) -> Vec<Frozen> {
     // several of them, but not all, are met by any point, and are what a plan of poses holds still
     all.retain(|frozen| frozen.joints.len() == 1 || frozen.joints.len() == count);
     all.retain(|frozen| draft.len() >= frozen.rows.len() + FEWEST_OTHERS);
-    all.sort_by(|a, b| b.rows.len().cmp(&a.rows.len()));
+    all.sort_by_key(|frozen| std::cmp::Reverse(frozen.rows.len()));
     all.truncate(MOST_STRETCHES);
     all
 }

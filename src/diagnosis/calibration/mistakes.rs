@@ -33,11 +33,10 @@ mod slips;
 mod tests;
 mod typed;
 
-use self::another_rod::ComparedRods;
 use self::columns::Silent;
 use self::draft::{Draft, DraftChange};
 use self::held::{held, mostly_held, without_held};
-use self::may_be_meant::add_rivals;
+use self::may_be_meant::{ComparedRods, add_rivals};
 use self::motion::{beside_found, has_moved, measure_moves};
 use self::moves::Other;
 use self::quick::LoadedRobot;

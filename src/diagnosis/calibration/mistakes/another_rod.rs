@@ -13,13 +13,12 @@
 //! tell which of the two it was, and that is said.
 
 use super::Mended;
-use super::may_be_meant::log_probability;
+use super::may_be_meant::{ComparedRods, log_probability};
 use super::search::{ALIKE, ODDS};
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Mode, Options, Summary, calibrate};
-use crate::diagnosis::Limitation;
 use crate::diagnosis::calibration::effects::mistakes::ROD_MISTAKE;
-use crate::inference::{Diagnosis, Key, Location, Rival};
+use crate::inference::{Key, Location, Rival};
 use crate::rod::Rod;
 
 /// Tips that are farther apart, as a share of the rod's length, are seen as such.
@@ -27,15 +26,6 @@ const ANOTHER_TIP: f64 = 0.03;
 /// So many rods are compared, of so many poses at most.
 const MOST: usize = 4;
 const MOST_ROWS: usize = 2000;
-
-/// How probable the poses are with other rods.
-#[derive(Debug, Clone)]
-pub(super) struct ComparedRods {
-    /// Ln with the stated rod.
-    known: f64,
-    /// Files, and ln with each.
-    pub others: Vec<(String, f64)>,
-}
 
 /// A campaign with another rod.
 struct WithRod<'r> {
@@ -125,26 +115,5 @@ impl Mended {
             compared = ComparedRods { known: most, others: Vec::new() };
         }
         self.compared = Some(compared);
-    }
-}
-
-impl ComparedRods {
-    /// The files that stand beside the stated one, and the odds against each; less than 1 where it
-    /// is the more probable one.
-    pub fn alike(&self) -> impl Iterator<Item = (&String, f64)> {
-        let odds = self.others.iter().map(|(file, other)| (file, self.known - other));
-        odds.filter(|(_, against)| *against < ALIKE).map(|(file, against)| (file, against.exp()))
-    }
-
-    /// What is to be said of them beside a diagnosis that names none.
-    pub fn limits(&self, diagnosis: &Diagnosis) -> Vec<Limitation> {
-        let is_said = |file: &str| {
-            let place = Location::key(file);
-            let findings = diagnosis.findings.iter();
-            let mut rivals = findings.flat_map(|finding| &finding.rivals);
-            rivals.any(|rival| *rival.effect == ROD_MISTAKE && rival.location == place)
-        };
-        let open = self.alike().filter(|(file, _)| !is_said(file));
-        open.map(|(file, against)| Limitation::AnotherRod(file.clone(), 1.0 / against)).collect()
     }
 }

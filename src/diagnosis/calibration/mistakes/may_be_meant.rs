@@ -10,15 +10,45 @@ use super::super::diagnose::prepared::Prepared;
 use super::super::effects::contact::CONTACT_FORCE_VARIATION;
 use super::super::effects::mistakes::{ROD_MISTAKE, UNIT_MISTAKE};
 use super::super::model::law::Law;
-use super::another_rod::ComparedRods;
 use super::search::ALIKE;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Mode, Options, calibrate};
-use crate::inference::{Finding, Location, Rival, sketch};
+use crate::diagnosis::Limitation;
+use crate::inference::{Diagnosis, Finding, Location, Rival, sketch};
 use crate::units::{POUND_FORCE, STANDARD_GRAVITY};
 
 /// Units that a force may be in, N.
 const UNITS: [f64; 2] = [STANDARD_GRAVITY, POUND_FORCE];
+
+/// How probable the poses are with other rods.
+#[derive(Debug, Clone)]
+pub(super) struct ComparedRods {
+    /// Ln with the stated rod.
+    pub known: f64,
+    /// Files, and ln with each.
+    pub others: Vec<(String, f64)>,
+}
+
+impl ComparedRods {
+    /// The files that stand beside the stated one, and the odds against each; less than 1 where it
+    /// is the more probable one.
+    pub fn alike(&self) -> impl Iterator<Item = (&String, f64)> {
+        let odds = self.others.iter().map(|(file, other)| (file, self.known - other));
+        odds.filter(|(_, against)| *against < ALIKE).map(|(file, against)| (file, against.exp()))
+    }
+
+    /// What is to be said of them beside a diagnosis that names none.
+    pub fn limits(&self, diagnosis: &Diagnosis) -> Vec<Limitation> {
+        let is_said = |file: &str| {
+            let place = Location::key(file);
+            let findings = diagnosis.findings.iter();
+            let mut rivals = findings.flat_map(|finding| &finding.rivals);
+            rivals.any(|rival| *rival.effect == ROD_MISTAKE && rival.location == place)
+        };
+        let open = self.alike().filter(|(file, _)| !is_said(file));
+        open.map(|(file, against)| Limitation::AnotherRod(file.clone(), 1.0 / against)).collect()
+    }
+}
 
 /// Adds what may be meant, of the rods that were compared and the units, to what was found of rod
 /// and force.

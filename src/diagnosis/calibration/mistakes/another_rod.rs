@@ -13,7 +13,7 @@
 //! tell which of the two it was, and that is said.
 
 use super::Mended;
-use super::may_be_meant::{ComparedRods, log_probability};
+use super::may_be_meant::{ComparedRods, in_other_units, log_probability};
 use super::search::{ALIKE, ODDS};
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Mode, Options, Summary, calibrate};
@@ -95,7 +95,13 @@ impl Mended {
         let others = with.iter().map(|with| (with.rod.0.clone(), with.log_probability)).collect();
         let mut compared = ComparedRods { known, others };
         let best = with.into_iter().max_by(|a, b| a.log_probability.total_cmp(&b.log_probability));
-        if let Some(best) = best.filter(|best| best.log_probability - known > ODDS) {
+        // a force in another unit may bend the stated rod as much
+        let is_alone = |best: &WithRod| {
+            let units = in_other_units(&self.campaign, self.mode, &self.options);
+            units.iter().all(|other| best.log_probability - other > ALIKE)
+        };
+        let best = best.filter(|best| best.log_probability - known > ODDS && is_alone(best));
+        if let Some(best) = best {
             let (file, rod) = best.rod;
             let most = best.log_probability;
             let cure = format!("Write rod = \"{file}\"");

@@ -72,16 +72,22 @@ pub fn add_rivals(
         add(&mut found.diagnosis.findings[position], rival);
     }
     let Some(known) = calibrated(campaign, mode, options) else { return };
-    for unit in UNITS {
-        let Some(force) = campaign.contact_force.map(|force| force * unit) else { continue };
-        let with = Campaign { contact_force: Some(force), ..campaign.clone() };
-        let Some(other) = calibrated(&with, mode, options) else { continue };
+    for other in in_other_units(campaign, mode, options) {
         if other + ALIKE > known {
             let odds = (known - other).max(0.0).exp();
             let rival = Rival::without_term(&UNIT_MISTAKE, Location::key("contact_force_n"), odds);
             add(&mut found.diagnosis.findings[position], rival);
         }
     }
+}
+
+/// Ln of the probability of the poses with the contact force in each unit that it may be in.
+pub(super) fn in_other_units(campaign: &Campaign, mode: Mode, options: &Options) -> Vec<f64> {
+    let with = |unit: &f64| {
+        let contact_force = Some(campaign.contact_force? * *unit);
+        calibrated(&Campaign { contact_force, ..campaign.clone() }, mode, options)
+    };
+    UNITS.iter().filter_map(with).collect()
 }
 
 /// A file is sooner looked at than anything is measured.

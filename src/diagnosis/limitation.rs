@@ -44,6 +44,9 @@ pub enum Limitation {
     /// A joint, from 0, with play, and poses, by their names, whose load is too small to say to
     /// which side it pulls.
     UnknownSide(usize, Vec<String>),
+    /// Another rod of the same folder, by its file, that these poses do not tell from the stated
+    /// one: they are so many times as probable with it.
+    AnotherRod(String, f64),
     /// The poses are too few to hold any out.
     NoFoldsOfPoses,
 }
@@ -141,6 +144,15 @@ impl fmt::Display for Limitation {
                 poses.join(", "),
                 joint + 1
             ),
+            Limitation::AnotherRod(file, odds) => {
+                let times = significant(odds.max(1.0 / odds), 2);
+                let which = if *odds < 1.0 { "less" } else { "more" };
+                write!(
+                    f,
+                    "These poses do not tell the rod from that of {file}: with that one they are {times} times {which} \
+                     probable. Look which of the two was on the robot."
+                )
+            }
             Limitation::NoFoldsOfPoses => f.write_str(
                 "The poses are too few to hold any out: no finding is confirmed by \
                     prediction.",

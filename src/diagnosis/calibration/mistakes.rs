@@ -15,10 +15,12 @@
 //! A mistake that these poses cannot tell from another one names it as a rival; one that they hide
 //! altogether (the zero of the first joint without a stated base) is not named.
 
+mod another_rod;
 mod columns;
 mod distance;
 mod draft;
 mod found;
+mod frozen;
 mod held;
 mod may_be_meant;
 mod motion;
@@ -32,9 +34,9 @@ mod tests;
 mod typed;
 
 use self::columns::Silent;
-use self::draft::Draft;
+use self::draft::{Draft, DraftChange};
 use self::held::{held, mostly_held, without_held};
-use self::may_be_meant::add_rivals;
+use self::may_be_meant::{ComparedRods, add_rivals};
 use self::motion::{beside_found, has_moved, measure_moves};
 use self::moves::Other;
 use self::quick::LoadedRobot;
@@ -87,6 +89,8 @@ pub struct Mended {
     is_rod_rewritten: bool,
     /// Rods that may have been meant, by their files.
     rods: Vec<(String, Rod)>,
+    /// How probable the poses are with those that are as long; `None` where nobody asked.
+    compared: Option<ComparedRods>,
     /// How it is calibrated.
     options: Options,
     /// Errors of a calibration on what was recorded; `None` where nothing was found.
@@ -124,7 +128,9 @@ pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Opti
         let recorded = calibrate(campaign, mode, options).ok();
         mended.recorded = recorded.map(|calibration| Summary::of(&calibration.residuals()));
     }
-    Ok(mended.confirmed(campaign, mode))
+    let mut mended = mended.confirmed(campaign, mode);
+    mended.compare_rods();
+    Ok(mended)
 }
 
 /// Each mistake that `campaign` seems to hold, for those who do not ask for a diagnosis: `likely
@@ -168,6 +174,7 @@ impl Mended {
             has_data: true,
             is_rod_rewritten: false,
             rods: Vec::new(),
+            compared: None,
             options: *options,
             recorded: None,
         }
@@ -195,7 +202,8 @@ impl Mended {
     pub fn diagnose(&self) -> Result<CalibrationDiagnosis<'_>> {
         let calibration = calibrate(&self.campaign, self.mode, &self.options)?;
         let mut found = diagnose_calibrated(&self.campaign, calibration)?;
-        add_rivals(&self.campaign, &self.rods, &self.options, &mut found);
+        add_rivals(&self.campaign, self.compared.as_ref(), &self.options, &mut found);
+        found.limits.extend(self.compared.iter().flat_map(|rods| rods.limits(&found.diagnosis)));
         let has_failed = found.is_implausible();
         let diagnosis = &mut found.diagnosis;
         if has_failed || !self.has_data {
@@ -338,6 +346,15 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Option
         search.guess_weight = NO_GUESS;
         result = search.found();
     }
+    let frozen = match is_sure {
+        true => Vec::new(),
+        false => search.frozen(&search.draft, result.as_ref().map(|(_, best, _)| best)),
+    };
+    if !frozen.is_empty() {
+        let rows = frozen.iter().flat_map(|frozen| frozen.rows.iter().copied()).collect();
+        search.draft.apply(&DraftChange::Without(rows));
+        result = search.found();
+    }
     let has_failed = result.as_ref().is_none_or(|(_, best, _)| search.has_failed(best));
     for silent in silent.into_iter().filter(|silent| has_failed || !silent.only_if_failed) {
         mended.has_data = false;
@@ -350,6 +367,7 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Option
     }
     let mut slips = search.held_slips(&campaign.measurements, (&best, &whole), &held);
     slips.extend(search.slips(&best, &campaign.measurements));
+    slips.extend(frozen.iter().map(|frozen| frozen.slip(&search, &campaign.measurements)));
     for slip in slips {
         best.steps.push(SearchStep::Slip(slip.change.clone()));
         mended.add_slip(slip);

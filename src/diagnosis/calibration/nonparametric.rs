@@ -18,6 +18,7 @@
 //!                       joints' angles
 //! of each clamp         a vector in {W}, or in {T}
 //! of a clamp's sensors  `device.rs`
+//! of a loaded drive      `loaded.rs`
 //! of a loose tool, of a bearing that runs out   `loose.rs`
 //! of a torque or a scale, times a clock         `changing.rs`
 //! of the last moves     `moves.rs`
@@ -29,6 +30,7 @@
 mod changing;
 mod curve;
 mod device;
+mod loaded;
 mod loose;
 mod moves;
 mod waves;
@@ -100,6 +102,7 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
     entries.extend(links(context));
     entries.extend(clamps(context));
     entries.extend(device::all(context));
+    entries.extend(loaded::all(context));
     entries.extend(loose::all(context));
     entries.extend(changing::all(context));
     entries.extend(moves::all(context));
@@ -145,7 +148,12 @@ fn zero(context: &Context, joint: usize) -> Option<Entry> {
     (lever > 0.0).then(|| curve(label, follows, Some(Variable::Order), parameters))
 }
 
+/// What depends on where the ball is. A socket's place is free, and takes all of that; where the
+/// ball is beside it is the scatter itself, which follows itself.
 fn workspace(context: &Context) -> Option<Entry> {
+    if context.has_sockets() {
+        return None;
+    }
     let of_axis = |axis: usize| {
         scaled(
             &context.configurations.iter().map(|configuration| configuration.tip[axis]).collect::<Vec<_>>(),

@@ -1,6 +1,7 @@
 //! Columns against a robot that is moved for it, and effects that are put into simulated campaigns
 //! by such robots.
 
+mod another_rod;
 mod changed;
 mod changing;
 mod columns;

@@ -15,7 +15,7 @@ use crate::robot::Motion;
 pub const MEMORY_LIMIT: f64 = 2e9;
 /// Numbers for each pose: of a joint's gear and approach; of a pair of joints and of a link by a
 /// pair of them; of all else.
-const OF_JOINT: f64 = 1300.0;
+const OF_JOINT: f64 = 1450.0;
 const OF_PAIR: f64 = 30.0;
 const OF_LINK: f64 = 9.0;
 const OF_ALL: f64 = 3500.0;

@@ -133,7 +133,7 @@ pub static STUCK_SENSOR: Effect = Effect {
     formula: "recorded = constant",
     prior: "more equal numbers than one in a thousand recordings has by chance, farther out than the others",
     parameters: &[(&["mm"], "what a position shows"), (&["deg"], "what a joint shows")],
-    needs: "five rows; of a joint that never moves a fit that fails",
+    needs: "five rows, of a joint four; of a joint that never moves a fit that fails",
     cause: "a value that was not recorded",
     cause_at: |location| at("a column that does not change", location),
     written_to: WrittenTo::Nowhere,

@@ -214,7 +214,9 @@ impl Robot<'_> {
                 ..site.clone()
             }
         };
-        (0..3).map(position).chain(clocks.iter().map(|clock| clock.over(&site))).collect()
+        // where a ball is beside the middle of its socket is the scatter itself
+        let axes = 0..if self.context.has_sockets() { 0 } else { 3 };
+        axes.map(position).chain(clocks.iter().map(|clock| clock.over(&site))).collect()
     }
 
     /// A displacement along three axes, its variable yet to be named.

@@ -4,7 +4,7 @@ mod displaced;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::calibration::campaign::{Campaign, Recording, Station, Targets};
+use crate::calibration::campaign::{Campaign, Distance, Recording, Station, Targets};
 use crate::spatial::Pose;
 
 /// What was recorded, row by row, with all that a mistake may have changed.
@@ -348,8 +348,22 @@ impl Draft {
         }
         let names: Vec<String> = recorded.stations.iter().map(|station| station.name.clone()).collect();
         meant.stations = named(names, self.stations).iter().map(|name| Station::first(name)).collect();
-        if let Targets::Points(points) = &mut meant.targets {
-            *points = (0..self.len()).map(|row| self.point(row)).collect();
+        match (&mut meant.targets, &recorded.targets) {
+            (Targets::Points(points), _) => *points = (0..self.len()).map(|row| self.point(row)).collect(),
+            (_, Targets::Points(_)) => {}
+            (Targets::Sockets(distances), Targets::Sockets(all)) => {
+                // of a socket all of whose rows were left out nothing is known
+                let used: Vec<usize> =
+                    (0..recorded.groups.len()).filter(|group| self.group.contains(group)).collect();
+                let place = |group: usize| used.iter().position(|known| *known == group);
+                let still = |own: &Distance| {
+                    let [a, b] = own.between.map(place);
+                    Some(Distance { between: [a?, b?], ..*own })
+                };
+                *distances = all.iter().filter_map(still).collect();
+                meant.groups = used.iter().map(|&group| meant.groups[group].clone()).collect();
+                meant.rows.iter_mut().for_each(|row| row.group = place(row.group).unwrap_or(0));
+            }
         }
         meant
     }

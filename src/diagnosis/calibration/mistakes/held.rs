@@ -61,23 +61,30 @@ pub(super) fn held(draft: &Draft) -> Vec<Held> {
 
 /// Stretches of equal values.
 fn still(axis: usize, values: &[f64]) -> Vec<Held> {
+    let stretch = |(rows, log_odds): (Vec<usize>, f64)| Held {
+        axes: vec![axis],
+        values: vec![values[rows[0]]],
+        rows,
+        is_limit: false,
+        log_odds,
+    };
+    equal_neighbours(values, FEWEST).into_iter().map(stretch).collect()
+}
+
+/// Places of so many equal values or more, one after the other, that are no accident, and ln of
+/// the odds that they are none; nothing where all are equal.
+pub(super) fn equal_neighbours(values: &[f64], fewest: usize) -> Vec<(Vec<usize>, f64)> {
     if is_constant(values) {
         return Vec::new();
     }
     let rows: Vec<usize> = (0..values.len()).collect();
     let runs: Vec<&[usize]> = rows.chunk_by(|&a, &b| (values[a] - values[b]).abs() <= SAME).collect();
-    let short = || runs.iter().filter(|run| run.len() < FEWEST);
+    let short = || runs.iter().filter(|run| run.len() < fewest);
     let equal: usize = short().map(|run| run.len() - 1).sum();
     let chance = share(equal, short().map(|run| run.len()).sum());
-    let of_run = |run: &&[usize]| Held {
-        axes: vec![axis],
-        rows: run.to_vec(),
-        values: vec![values[run[0]]],
-        is_limit: false,
-        log_odds: ln_odds(run.len(), chance, values.len()),
-    };
-    let long = runs.iter().filter(|run| run.len() >= FEWEST).map(of_run);
-    long.filter(|held| held.log_odds > ODDS).collect()
+    let odds = |run: &&&[usize]| (run.to_vec(), ln_odds(run.len(), chance, values.len()));
+    let long = runs.iter().filter(|run| run.len() >= fewest);
+    long.map(|run| odds(&run)).filter(|(_, odds)| *odds > ODDS).collect()
 }
 
 /// The largest and the smallest value, where one of them stands in many rows.

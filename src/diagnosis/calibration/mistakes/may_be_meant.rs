@@ -12,22 +12,49 @@ use super::super::effects::mistakes::{ROD_MISTAKE, UNIT_MISTAKE};
 use super::super::model::law::Law;
 use super::search::ALIKE;
 use crate::calibration::campaign::Campaign;
-use crate::calibration::{Mode, Options, calibrate};
-use crate::inference::{Effect, Finding, Location, Rival, sketch};
-use crate::rod::Rod;
+use crate::calibration::{Calibration, Mode, Options, calibrate};
+use crate::diagnosis::Limitation;
+use crate::inference::{Diagnosis, Finding, Location, Rival, sketch};
 use crate::units::{POUND_FORCE, STANDARD_GRAVITY};
 
-/// Tips that are farther apart, as a share of the rod's length, are seen as such.
-const ANOTHER_TIP: f64 = 0.03;
-/// So many rods are tried.
-const MOST: usize = 4;
 /// Units that a force may be in, N.
 const UNITS: [f64; 2] = [STANDARD_GRAVITY, POUND_FORCE];
 
-/// Adds what may be meant, of the files `rods` and the units, to what was found of rod and force.
+/// How probable the poses are with other rods.
+#[derive(Debug, Clone)]
+pub(super) struct ComparedRods {
+    /// Ln with the stated rod.
+    pub known: f64,
+    /// Files, and ln with each.
+    pub others: Vec<(String, f64)>,
+}
+
+impl ComparedRods {
+    /// The files that stand beside the stated one, and the odds against each; less than 1 where it
+    /// is the more probable one.
+    pub fn alike(&self) -> impl Iterator<Item = (&String, f64)> {
+        let odds = self.others.iter().map(|(file, other)| (file, self.known - other));
+        odds.filter(|(_, against)| *against < ALIKE).map(|(file, against)| (file, against.exp()))
+    }
+
+    /// What is to be said of them beside a diagnosis that names none.
+    pub fn limits(&self, diagnosis: &Diagnosis) -> Vec<Limitation> {
+        let is_said = |file: &str| {
+            let place = Location::key(file);
+            let findings = diagnosis.findings.iter();
+            let mut rivals = findings.flat_map(|finding| &finding.rivals);
+            rivals.any(|rival| *rival.effect == ROD_MISTAKE && rival.location == place)
+        };
+        let open = self.alike().filter(|(file, _)| !is_said(file));
+        open.map(|(file, against)| Limitation::AnotherRod(file.clone(), 1.0 / against)).collect()
+    }
+}
+
+/// Adds what may be meant, of the rods that were compared and the units, to what was found of rod
+/// and force.
 pub fn add_rivals(
     campaign: &Campaign,
-    rods: &[(String, Rod)],
+    rods: Option<&ComparedRods>,
     options: &Options,
     found: &mut CalibrationDiagnosis,
 ) {
@@ -40,45 +67,43 @@ pub fn add_rivals(
     };
     let Some(position) = found.diagnosis.findings.iter().position(is_of_rod) else { return };
     let mode = model.calibration.mode;
-    let Some(known) = log_probability(campaign, mode, options) else { return };
-    for (effect, location, other, mode) in meant(campaign, rods, mode) {
-        let finding = &mut found.diagnosis.findings[position];
-        let is_known = finding.rivals.iter().any(|own| own.effect == effect && own.location == location);
-        let Some(other) = log_probability(&other, mode, options).filter(|_| !is_known) else { continue };
+    for (file, odds) in rods.iter().flat_map(|rods| rods.alike()) {
+        let rival = Rival::without_term(&ROD_MISTAKE, Location::key(file), odds.max(1.0));
+        add(&mut found.diagnosis.findings[position], rival);
+    }
+    let Some(known) = calibrated(campaign, mode, options) else { return };
+    for other in in_other_units(campaign, mode, options) {
         if other + ALIKE > known {
-            // a file is sooner looked at than anything is measured
             let odds = (known - other).max(0.0).exp();
-            finding.rivals.insert(0, Rival::without_term(effect, location, odds));
+            let rival = Rival::without_term(&UNIT_MISTAKE, Location::key("contact_force_n"), odds);
+            add(&mut found.diagnosis.findings[position], rival);
         }
     }
 }
 
-/// Campaigns with another rod, or another unit of the force.
-fn meant(
-    campaign: &Campaign,
-    rods: &[(String, Rod)],
-    mode: Mode,
-) -> Vec<(&'static Effect, Location, Campaign, Mode)> {
-    // the readings of a rig are those of the rod that was on it
-    let of_file = if mode == Mode::Meas { Mode::Fea } else { mode };
-    let tip = campaign.rod.as_ref().map(Rod::tip);
-    let is_near = |rod: &Rod| tip.is_some_and(|tip| (rod.tip() - tip).norm() < ANOTHER_TIP * tip.norm());
-    let with_rod = |(file, rod): &(String, Rod)| {
-        let with = Campaign { rod: Some(rod.clone()), readings: None, ..campaign.clone() };
-        (&ROD_MISTAKE, Location::key(file), with, of_file)
+/// Ln of the probability of the poses with the contact force in each unit that it may be in.
+pub(super) fn in_other_units(campaign: &Campaign, mode: Mode, options: &Options) -> Vec<f64> {
+    let with = |unit: &f64| {
+        let contact_force = Some(campaign.contact_force? * *unit);
+        calibrated(&Campaign { contact_force, ..campaign.clone() }, mode, options)
     };
-    let with_force = |unit: f64| {
-        let force = campaign.contact_force.map(|force| force * unit)?;
-        let with = Campaign { contact_force: Some(force), ..campaign.clone() };
-        Some((&UNIT_MISTAKE, Location::key("contact_force_n"), with, mode))
-    };
-    let rods = rods.iter().filter(|(_, rod)| is_near(rod)).take(MOST).map(with_rod);
-    rods.chain(UNITS.into_iter().filter_map(with_force)).collect()
+    UNITS.iter().filter_map(with).collect()
+}
+
+/// A file is sooner looked at than anything is measured.
+fn add(finding: &mut Finding, rival: Rival) {
+    let is_it = |own: &Rival| own.effect == rival.effect && own.location == rival.location;
+    if !finding.rivals.iter().any(is_it) {
+        finding.rivals.insert(0, rival);
+    }
+}
+
+fn calibrated(campaign: &Campaign, mode: Mode, options: &Options) -> Option<f64> {
+    log_probability(campaign, calibrate(campaign, mode, options).ok()?)
 }
 
 /// Ln of the probability of the poses with all that explains them best.
-fn log_probability(campaign: &Campaign, mode: Mode, options: &Options) -> Option<f64> {
-    let calibration = calibrate(campaign, mode, options).ok()?;
+pub(super) fn log_probability(campaign: &Campaign, calibration: Calibration) -> Option<f64> {
     let prepared = Prepared::new(campaign, calibration).ok()?;
     Some(sketch(&prepared.model, &prepared.evidence).log_probability)
 }

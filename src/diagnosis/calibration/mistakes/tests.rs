@@ -1,4 +1,5 @@
 mod fixtures;
+mod frozen;
 mod held;
 mod moved_base;
 mod parts;

@@ -5,6 +5,7 @@ use super::changed::{Case, Row, assert_changes};
 use super::*;
 use crate::calibration::Compensation;
 use crate::calibration::campaign::{Distance, GroupName};
+use crate::diagnosis::calibration::laws::sites::sites;
 use crate::spatial::{Pose, exponential};
 
 fn axis(axis: usize) -> Vector3<f64> {
@@ -188,4 +189,22 @@ fn a_socket_moves_alone_and_a_plate_turns_about_its_middle() {
         ("socket_shift", &plate, "rz_urad", Box::new(turn(2))),
     ];
     assert_changes(&campaign, &calibration, cases);
+}
+
+/// A socket's place is free: where the ball is beside the middle of it is what scatters itself, and
+/// follows itself.
+#[test]
+fn in_sockets_nothing_follows_where_the_ball_is() {
+    let follows_place = |campaign: &Campaign| {
+        let calibration = calibrate(campaign, Mode::Fea, &Options::default()).unwrap();
+        let context = Context::new(campaign, &calibration).unwrap();
+        let (model, _) = CalibrationModel::new(campaign, calibration.clone()).unwrap();
+        let labels = model.terms.candidates.iter().map(|own| own.location.to_string());
+        let curves = labels.filter(|label| label == "over the workspace").count();
+        let sites = sites(&context, 3 * campaign.measurements.len());
+        let laws = sites.iter().filter(|site| site.variable.name.starts_with("position along")).count();
+        (curves, laws)
+    };
+    assert_eq!(follows_place(&clamps(12)), (1, 3));
+    assert_eq!(follows_place(&sockets()), (0, 0));
 }

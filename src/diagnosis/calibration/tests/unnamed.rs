@@ -91,6 +91,14 @@ fn links_turn_and_joints_err_together() {
         ),
         (
             "unknown",
+            "joint 3, a wave 2.5 times per revolution, times its torque",
+            "loaded_cos_urad",
+            Box::new(move |r, row, v| {
+                r.q[2] += v * r.torque()[2] / most * (2.5 * recording.joints(row)[2]).cos()
+            }),
+        ),
+        (
+            "unknown",
             "joint 4, twice per turn along its axis",
             "cos_2_along_um",
             Box::new(move |r, row, v| r.setup.links[3].d += v * (2.0 * recording.joints(row)[3]).cos()),
@@ -241,25 +249,65 @@ fn a_loose_tool_is_no_mass() {
     assert_eq!(left.as_deref(), Some("orientation, loose along x of the tool"));
 }
 
+/// What is found of something that turns a joint by so much in each row: names, and where the rest
+/// is.
+fn of_turned(
+    campaign: &Campaign,
+    noise: f64,
+    seed: u64,
+    turned: impl Fn(usize) -> (usize, f64),
+) -> (Vec<&'static str>, Option<String>) {
+    let calibration = calibrate(campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(campaign, &calibration).unwrap();
+    let by = |row: usize| {
+        let (joint, turn) = turned(row);
+        context.configurations[row].tip_jacobian[joint] * turn
+    };
+    let recorded = recorded(campaign, &by, noise, seed);
+    let found = diagnose_as_recorded(&recorded, Mode::Fea, &Options::default()).unwrap();
+    let names = found.diagnosis.findings.iter().map(|f| f.effect.name).collect();
+    let left = found.diagnosis.discrepancy.and_then(|left| left.location);
+    (names, left.map(|at| at.to_string()))
+}
+
 /// A drive that gives way more at some angles than at others: most of it is a wave of its gear.
 #[test]
 fn a_compliance_that_follows_the_angle_is_no_error_of_the_gear() {
     let campaign = clamps(30);
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
     let context = Context::new(&campaign, &calibration).unwrap();
-    let (q, torque) = (
-        |row: usize| context.configurations[row].joints[1],
-        |row: usize| context.configurations[row].torque[1],
-    );
-    let by = |row: usize| {
-        context.configurations[row].tip_jacobian[1] * (1e-6 * torque(row) * (2.0 * q(row) + 0.4).sin())
-    };
+    for (cycles, seed) in [(2.0, 0), (2.0, 1), (12.0, 0), (5.0, 1)] {
+        let turned = |row: usize| {
+            let there = &context.configurations[row];
+            (1, 1e-6 * there.torque[1] * (cycles * there.joints[1] + 0.4).sin())
+        };
+        let place = format!("joint 2, a wave {cycles} times per revolution, times its torque");
+        assert_eq!(of_turned(&campaign, 15.0 * UM, seed, turned), (vec![], Some(place)));
+        // the same without a load is an error of the gear
+        let unloaded = |row: usize| (1, 60e-6 * (cycles * context.configurations[row].joints[1] + 0.4).sin());
+        assert_eq!(of_turned(&campaign, 15.0 * UM, seed, unloaded), (vec!["transmission_error"], None));
+    }
+}
+
+/// A drive that is turned by what is left of earlier loads, of half a width of a fifth of their
+/// range.
+#[test]
+fn what_earlier_torques_have_left_is_no_lag_and_no_slip() {
+    let campaign = clamps(30);
+    let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+    let context = Context::new(&campaign, &calibration).unwrap();
+    let torques: Vec<f64> = context.configurations.iter().map(|there| there.torque[1]).collect();
+    let low = torques.iter().copied().fold(f64::INFINITY, f64::min);
+    let width = 0.2 * (torques.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low);
+    let mut left = 0.0f64;
+    let mut kept = Vec::new();
+    for torque in &torques {
+        left = left.max(torque - width).min(torque + width);
+        kept.push((torque - left) / width);
+    }
     for seed in 0..2 {
-        let recorded = recorded(&campaign, &by, 15.0 * UM, seed);
-        let found = diagnose_as_recorded(&recorded, Mode::Fea, &Options::default()).unwrap();
-        let names: Vec<&str> = found.diagnosis.findings.iter().map(|f| f.effect.name).collect();
-        let left = found.diagnosis.discrepancy.and_then(|left| left.location).map(|at| at.to_string());
-        assert_eq!((names, left.as_deref()), (vec![], Some("joint 2, a curve times its torque")));
+        let found = of_turned(&campaign, 15.0 * UM, seed, |row| (1, 60e-6 * kept[row]));
+        assert_eq!(found, (vec![], Some("joint 2, what earlier torques have left".to_owned())));
     }
 }
 

@@ -61,6 +61,11 @@ fn heavy_in_clamps(each: usize) -> Campaign {
 
 /// Poses whose tip is within a millimetre of some spots of {0}, so many at each.
 fn visited(spots: &[Vector3<f64>], each: usize) -> Campaign {
+    visited_within(spots, each, 0.5 * MM)
+}
+
+/// The same; tips scatter about their spots by so much, m.
+pub(super) fn visited_within(spots: &[Vector3<f64>], each: usize, scatter: f64) -> Campaign {
     let built = robot(1.0, 7);
     let mut random = Random::seeded(7, 3);
     let base = Pose::from_xyz_rpy(BASE.0, BASE.1);
@@ -68,7 +73,7 @@ fn visited(spots: &[Vector3<f64>], each: usize) -> Campaign {
     for spot in spots {
         let mut found = 0;
         while found < each {
-            let there = spot + Vector3::from_fn(|_, _| 0.5 * MM * random.normal());
+            let there = spot + Vector3::from_fn(|_, _| scatter * random.normal());
             let start = Vector6::from_fn(|_, _| random.uniform(-2.4, 2.4));
             let Some(q) = reaching(&built, &there, start) else { continue };
             let noise = Vector3::from_fn(|_, _| 30.0 * UM * random.normal());

@@ -74,7 +74,7 @@ fn a_small_trial_is_answered_as_well_as_ever() {
         let rate = &score[kind][rate];
         (rate["count"].as_u64().unwrap(), rate["of"].as_u64().unwrap())
     };
-    assert_eq!(rate("single", "in_class_rate"), (6, 6), "{single}");
+    assert_eq!(rate("single", "in_class_rate"), (5, 5), "{single}");
     assert!(count("pairs", "identifiable") == 1 && count("pairs", "both_found") == 1, "{}", score["pairs"]);
     let unknown = &score["unknown"];
     assert!(count("unknown", "identifiable") == 2 && count("unknown", "called_unknown") == 2, "{unknown}");

@@ -19,7 +19,7 @@ use std::f64::consts::PI;
 
 use super::super::effects::events::{MISREAD, OUTLIER};
 use super::prepared::Prepared;
-use crate::inference::{APART, Hypothesis, Term};
+use crate::inference::{Hypothesis, Term};
 use crate::statistics::ln_gamma;
 use nalgebra::{DVector, Vector3};
 
@@ -53,8 +53,7 @@ pub fn weights(prepared: &Prepared, hypothesis: &Hypothesis, left: &DVector<f64>
         let square = z.iter().map(|z| z * z).sum::<f64>() / tails.square;
         ((tails.freedom + 3.0) / (tails.freedom + square)).min(1.0)
     };
-    // within the odds of a rival nobody knows that it is no tail
-    let is_better = tails.ln_likelihood + APART.ln() > ln_misread(&all, &rows, MISREAD / noise);
+    let is_better = tails.ln_likelihood > ln_misread(&all, &rows, MISREAD / noise);
     is_better.then(|| {
         let weights: Vec<f64> = all.chunks(3).map(weight).collect();
         let squares = |z: &[f64]| z.iter().map(|z| z * z).sum::<f64>();

@@ -16,8 +16,8 @@ const ANGLE: f64 = 2.0 * DEG;
 /// Beyond that share it is another rod; beyond that angle too.
 const MOST: f64 = 0.25;
 const MOST_ANGLE: f64 = 15.0 * DEG;
-/// There are three of them and forty places of a connection, each as rare: where both explain alike,
-/// neither is to crowd the other out.
+/// There are three of them and forty places of a connection, each as rare: where both explain
+/// alike, neither is to crowd the other out.
 const RARE: f64 = 3.0 / 40.0;
 
 /// A length or the angle of the rod.

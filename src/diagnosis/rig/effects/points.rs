@@ -40,7 +40,7 @@ pub static LOAD_POINT: RigEffect = RigEffect {
         parameters: LENGTHS,
         needs: "a rod file",
         cause: "loads that are not attached where stated",
-        cause_at: |location| "loads that are not attached where stated".to_owned() + &of(location),
+        cause_at: |location| "loads that are not attached where stated".to_owned() + &whose(location),
         written_to: WrittenTo::Recording,
         reported: Reported::Alone,
         seen_along: along_the_load,
@@ -54,7 +54,7 @@ pub static LOAD_POINT: RigEffect = RigEffect {
     },
     missing: |_| "no load was applied",
     observed: |finding, model| {
-        let loads = of(&finding.location);
+        let loads = whose(&finding.location);
         format!("The point where loads act{loads} is off by {}", displacement(finding, model))
     },
     write: out_of_the_readings,
@@ -71,7 +71,7 @@ pub static SENSOR_POINT: RigEffect = RigEffect {
         parameters: LENGTHS,
         needs: "a rod file",
         cause: "sensors that do not read where stated",
-        cause_at: |location| "sensors that do not read where stated".to_owned() + &of(location),
+        cause_at: |location| "sensors that do not read where stated".to_owned() + &whose(location),
         written_to: WrittenTo::Recording,
         reported: Reported::Alone,
         seen_along: along_the_load,
@@ -85,15 +85,15 @@ pub static SENSOR_POINT: RigEffect = RigEffect {
     },
     missing: |_| "no readings were taken",
     observed: |finding, model| {
-        let sensors = of(&finding.location);
+        let sensors = whose(&finding.location);
         format!("The point that sensors read{sensors} is off by {}", displacement(finding, model))
     },
     write: out_of_the_readings,
 };
 
-/// Of one station: along the rod and across it, all axes together and each by itself, for each is set
-/// up by itself. Of several: each of them, along the rod. Several numbers at once would explain what
-/// is none of them.
+/// Of one station: along the rod and across it, all axes together and each by itself, for each is
+/// set up by itself. Of several: each of them, along the rod. Several numbers at once would explain
+/// what is none of them.
 fn points(context: &mut Context, effect: &'static RigEffect, end: End, axes: &[Axis]) -> Vec<Entry> {
     let Body::Rod(structure) = &mut *context.body else { return Vec::new() };
     let stations = structure.stations_of(end);
@@ -167,10 +167,10 @@ fn beside(structure: &mut Structure, end: End, station: f64, axes: [bool; 3]) ->
 }
 
 /// ` (loads along x)`; nothing of all.
-fn of(location: &Location) -> String {
+fn whose(location: &Location) -> String {
     match location {
         Location::Form { form, .. } => {
-            form.rsplit_once(", ").map_or_else(String::new, |(whose, _)| format!(" ({whose})"))
+            form.rsplit_once(", ").map_or_else(String::new, |(own, _)| format!(" ({own})"))
         }
         Location::Station(_) => format!(" ({location})"),
         _ => String::new(),

@@ -29,19 +29,16 @@ mod variation;
 
 use nalgebra::{Matrix3, Vector3};
 
-pub use self::point::{Point, between};
+pub use self::point::{Parts, Point, between, tangent};
 pub use self::softening::{Nodes, Softening, Variant};
 pub use self::variation::{End, Varied};
-use self::variation::{Variation, displaced};
+use self::variation::{Variation, displaced, moved};
 use crate::beam::{Physics, RodModel};
 use crate::error::{Error, Result};
 use crate::rig::readings::Readings;
 use crate::rod::{BendFlexibility, Joint, Pipe, Rod};
 use crate::spatial::skew;
 use crate::units::{MM, UM};
-
-/// m/N for each pair of load and read station.
-pub type Parts = Vec<Matrix3<f64>>;
 
 /// The parts of a rod.
 #[derive(Debug, Clone)]
@@ -60,7 +57,7 @@ pub struct Structure {
     /// Load and reading.
     pairs: Vec<[Point; 2]>,
     /// What else it would be with other lengths, or other points of loads and sensors.
-    variations: Vec<Variation>,
+    variations: Vec<Variation<Structure>>,
     /// Without its joints.
     rod: Rod,
     joints_of_file: Vec<Joint>,
@@ -226,11 +223,34 @@ impl Structure {
         }
         let mut varied = parts.clone();
         for variant in &softening.variants {
-            let variation = &self.variations[variant.variation];
-            let changes = variation.changes(self, &parts, softening, variant);
+            let changes = self.changes(&parts, softening, variant);
             varied.iter_mut().zip(changes).for_each(|(own, change)| *own += change);
         }
         varied
+    }
+
+    /// By how much the parts change, m/N, where a number of the geometry is another one; `parts` are
+    /// those of the file.
+    fn changes(&self, parts: &[Matrix3<f64>], softening: &Softening, variant: &Variant) -> Parts {
+        let variation = &self.variations[variant.variation];
+        let pipes = Softening { variants: Vec::new(), joints: Vec::new(), ..softening.clone() };
+        let mut changes = vec![Matrix3::zeros(); parts.len()];
+        for (share, node) in variation.shares(variant.value) {
+            let mut softened = node.softened(&pipes);
+            // few of many joints give way: those of a node are computed when they are needed
+            for &(joint, change) in &softening.joints {
+                let own = &self.joints[joint];
+                let hinge = node.hinge(moved(&self.rod, &node.rod, own.station), own.deformation);
+                softened.iter_mut().zip(hinge).for_each(|(sum, hinge)| *sum += hinge * change);
+            }
+            for ((change, softened), part) in changes.iter_mut().zip(softened).zip(parts) {
+                *change += (softened - part) * share;
+            }
+        }
+        for (change, pair) in changes.iter_mut().zip(&self.pairs) {
+            variation.mask(change, pair, &variant.axes);
+        }
+        changes
     }
 
     /// Adds what else the structure would be at values up to `most` from that of its file; the
@@ -241,7 +261,8 @@ impl Structure {
             return Some(known);
         }
         let of_file = Rod { joints: self.joints_of_file.clone(), ..self.rod.clone() };
-        self.variations.push(Variation::new(&of_file, &self.pairs, varied, most)?);
+        let structure = |rod: &Rod, pairs| Structure::between(rod, pairs).ok();
+        self.variations.push(Variation::new(&of_file, &self.pairs, varied, most, structure)?);
         Some(self.variations.len() - 1)
     }
 
@@ -337,15 +358,6 @@ pub fn responses(rod: &Rod, pairs: &[(f64, f64)]) -> Result<Parts> {
     let stations: Vec<f64> = pairs.iter().flat_map(|&(load, read)| [load, read]).collect();
     let model = RodModel::new(rod, &Physics::WHOLE, 1, &stations)?;
     pairs.iter().map(|&(load, read)| Ok(model.force_response(load, read)?.translation)).collect()
-}
-
-/// Direction of the undeformed centreline at a station, in {T}: that before a corner.
-pub fn tangent(rod: &Rod, station: f64) -> Vector3<f64> {
-    if station <= rod.bend_start() {
-        return Vector3::z();
-    }
-    let turn = rod.turn().min((station - rod.bend_start()) / rod.bend_radius.max(f64::MIN_POSITIVE));
-    Vector3::new(turn.sin(), 0.0, turn.cos())
 }
 
 /// EI in the rod's plane and GJ of all that bears at a station (m), N·m².

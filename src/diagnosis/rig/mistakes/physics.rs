@@ -6,8 +6,9 @@
 //! ```
 //!
 //! Columns: stiffness, shear, joints along the rod, one axis' loads, one channel, loads and sensors
-//! turned; by themselves the points of loads and sensors; `own` is each line's own. How large they may be is a [`MOODS`] entry: as files are, some
-//! times that, much, and, one after another, one thing far off with the rest as files are.
+//! turned; by themselves lengths, the angle and the points of loads and sensors; `own` is each
+//! line's own. How large they may be is a [`MOODS`] entry: as files are, some times that, much, and,
+//! one after another, one thing far off with the rest as files are.
 //! Everything is relative to the rod, so that units do not matter, and the density is that of the
 //! slopes as recorded, so that no rescaling is favoured.
 
@@ -103,8 +104,9 @@ impl Physics {
     }
 }
 
-/// By how much the compliance changes with each length and the angle of the rod, and where loads act,
-/// or sensors read, at another point: of each station, nearer to the flange and beside the rod.
+/// By how much the compliance changes with each length and the angle of the rod, and where loads
+/// act, or sensors read, at another point: of each station, nearer to the flange and beside the
+/// rod.
 fn points(rod: &Rod, structure: &Structure, whole: &[Matrix3<f64>]) -> Result<Vec<Vec<Matrix3<f64>>>> {
     let size = SINGLE_POINT * rod.length();
     let less = |moved: Vec<Matrix3<f64>>| moved.iter().zip(whole).map(|(own, whole)| own - whole).collect();

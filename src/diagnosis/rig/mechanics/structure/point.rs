@@ -2,11 +2,13 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::Parts;
 use crate::beam::{Physics, RodModel};
 use crate::error::Result;
 use crate::rod::Rod;
 use crate::spatial::skew;
+
+/// m/N for each pair of load and read station.
+pub type Parts = Vec<Matrix3<f64>>;
 
 /// A point that moves with the rod's cross-section at a station.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,8 +25,8 @@ impl Point {
         rod.point(self.station) + self.arm
     }
 
-    /// The point on another rod than `rod`: what was at the tip is at its tip, what was elsewhere is
-    /// as far from the flange.
+    /// The point on another rod than `rod`: what was at the tip is at its tip, what was elsewhere
+    /// is as far from the flange.
     pub fn moved(&self, rod: &Rod, other: &Rod) -> Point {
         let tip = other.length();
         let station = if self.station == rod.length() { tip } else { self.station.min(tip) };
@@ -57,4 +59,13 @@ pub fn between(rod: &Rod, pairs: &[[Point; 2]]) -> Result<Parts> {
         Ok(response)
     };
     pairs.iter().map(of_pair).collect()
+}
+
+/// Direction of the undeformed centreline at a station, in {T}: that before a corner.
+pub fn tangent(rod: &Rod, station: f64) -> Vector3<f64> {
+    if station <= rod.bend_start() {
+        return Vector3::z();
+    }
+    let turn = rod.turn().min((station - rod.bend_start()) / rod.bend_radius.max(f64::MIN_POSITIVE));
+    Vector3::new(turn.sin(), 0.0, turn.cos())
 }

@@ -213,14 +213,14 @@ fn beside_the_rod_a_load_twists_it_and_a_reading_is_its_reciprocal() {
         let [load, read] = [End::Load, End::Reading].map(|end| beside(end, axis, [true; 3]));
         assert_relative_eq!(load[0], read[1].transpose(), epsilon = 1e-12 * load[0].amax());
     }
-    // a load along y above pipe II twists it, and bends pipe I about x: by hand, with Θ = F·e·∫ds/GJ
+    // a load along y above pipe II twists it, and bends pipe I about x: by hand
     let centre = responses(&rod, &[(tip, tip)]).unwrap()[0];
     let mut structure = Structure::new(&rod, vec![(tip, tip)]).unwrap();
     let own = structure.add_variation(Varied::Beside(End::Load, tip, Axis::Z), 0.02).unwrap();
     let lifted =
         structure.softened(&Softening { variants: vec![variant(own, arm)], ..Softening::default() })[0];
     let ei = stiffness(&rod, 0.1)[0];
-    // the moment about x is −e·F: pipe I turns by that over EI, and so does pipe II's axis about itself
+    // the moment about x is −e·F: pipe I turns by that over EI, and pipe II about its own axis
     let bent = arm * rod.l1 * rod.l1 / (2.0 * ei);
     let joint = rod.joints[0].torsion;
     assert!(joint == 0.0);

@@ -1,13 +1,12 @@
 //! What a structure would be with other lengths, or with loads and sensors at other points.
 //!
-//! A length enters the compliance as a polynomial between two features of the rod: lever arms are of
-//! first degree in it, what they bend of third. The polynomial through the structures at five values
-//! is that one; of an angle, whose sine it follows, it is so to 2e-3 of the change.
+//! A length enters the compliance as a polynomial between two features of the rod: lever arms are
+//! of first degree in it, what they bend of third. The polynomial through the structures at five
+//! values is that one; of an angle, whose sine it follows, it is so to 2e-3 of the change.
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::point::Point;
-use super::{Parts, Softening, Structure, Variant, tangent};
+use super::point::{Point, tangent};
 use crate::rod::{NominalNumber, Rod};
 use crate::spatial::Axis;
 
@@ -25,8 +24,8 @@ pub enum End {
 pub enum Varied {
     /// A number of the rod's file, of this value there.
     Number(NominalNumber, f64),
-    /// The station of loads or sensors, by what is added, m: of those at this one. Beyond the tip the
-    /// point is on its tangent.
+    /// The station of loads or sensors, by what is added, m: of those at this one. Beyond the tip
+    /// the point is on its tangent.
     Along(End, f64),
     /// The same across the rod, along an axis of {T}.
     Beside(End, f64, Axis),
@@ -34,71 +33,54 @@ pub enum Varied {
 
 /// Structures at other values of one number.
 #[derive(Debug, Clone)]
-pub struct Variation {
+pub struct Variation<S> {
     /// The value of the file.
     neutral: f64,
     /// The other ones.
-    nodes: Vec<(f64, Structure)>,
+    nodes: Vec<(f64, S)>,
     pub varied: Varied,
 }
 
 /// Values beside the file's, as shares of the most; what is linear needs one of them.
 const NODES: [f64; 4] = [-1.0, -0.5, 0.5, 1.0];
 
-impl Variation {
-    /// Of `rod` between these points, at values up to `most` from its own; `None` where the beam
-    /// model refuses a rod.
-    pub fn new(rod: &Rod, pairs: &[[Point; 2]], varied: Varied, most: f64) -> Option<Variation> {
+impl<S> Variation<S> {
+    /// Of `rod` between these points, at values up to `most` from its own, made of `structure`;
+    /// `None` where that refuses one of them.
+    pub fn new(
+        rod: &Rod,
+        pairs: &[[Point; 2]],
+        varied: Varied,
+        most: f64,
+        structure: impl Fn(&Rod, Vec<[Point; 2]>) -> Option<S>,
+    ) -> Option<Variation<S>> {
         let neutral = if let Varied::Number(_, value) = varied { value } else { 0.0 };
         let shares = if let Varied::Beside(..) = varied { &NODES[3..] } else { &NODES[..] };
         let node = |share: &f64| {
             let value = neutral + share * most;
             let (rod, pairs) = changed(rod, pairs, &varied, value);
-            Some((value, Structure::between(&rod, pairs).ok()?))
+            Some((value, structure(&rod, pairs)?))
         };
         let nodes = shares.iter().map(node).collect::<Option<Vec<_>>>()?;
         Some(Variation { neutral, nodes, varied })
     }
 
-    /// By how much the parts change where a number is another one, m/N: by the polynomial through all
-    /// nodes, of which `parts` are that of the file.
+    /// The other structures, each with its share of what changes at `value`: by the polynomial
+    /// through all nodes, of which the file's is one.
     ///
     /// ```text
     /// Σ_k w_k(value)·(P_k − P_0)     w Lagrange's polynomials, which add up to one
     /// ```
-    pub fn changes(
-        &self,
-        structure: &Structure,
-        parts: &[Matrix3<f64>],
-        softening: &Softening,
-        variant: &Variant,
-    ) -> Parts {
-        let value = variant.value;
-        let pipes = Softening { variants: Vec::new(), joints: Vec::new(), ..softening.clone() };
-        let mut changes = vec![Matrix3::zeros(); parts.len()];
-        for (k, (at, node)) in self.nodes.iter().enumerate() {
+    pub fn shares(&self, value: f64) -> impl Iterator<Item = (f64, &S)> {
+        self.nodes.iter().enumerate().map(move |(k, (at, node))| {
             let others = self.nodes.iter().enumerate().filter(|(other, _)| *other != k);
             let values = others.map(|(_, (other, _))| *other).chain([self.neutral]);
-            let weight: f64 = values.map(|other| (value - other) / (at - other)).product();
-            let mut softened = node.softened(&pipes);
-            // few of many joints give way: those of a node are computed when they are needed
-            for &(joint, change) in &softening.joints {
-                let own = &structure.joints[joint];
-                let hinge = node.hinge(moved(&structure.rod, &node.rod, own.station), own.deformation);
-                softened.iter_mut().zip(hinge).for_each(|(sum, hinge)| *sum += hinge * change);
-            }
-            for ((change, softened), part) in changes.iter_mut().zip(softened).zip(parts) {
-                *change += (softened - part) * weight;
-            }
-        }
-        for (change, pair) in changes.iter_mut().zip(&structure.pairs) {
-            self.mask(change, pair, &variant.axes);
-        }
-        changes
+            (values.map(|other| (value - other) / (at - other)).product(), node)
+        })
     }
 
     /// Leaves nothing of what it does not concern.
-    fn mask(&self, change: &mut Matrix3<f64>, pair: &[Point; 2], axes: &[bool; 3]) {
+    pub fn mask(&self, change: &mut Matrix3<f64>, pair: &[Point; 2], axes: &[bool; 3]) {
         let (Varied::Along(end, station) | Varied::Beside(end, station, _)) = &self.varied else {
             return;
         };
@@ -152,8 +134,8 @@ pub(super) fn displaced(
     pairs
 }
 
-/// A station of one rod on another one whose pipes or bend are of another length: as far between the
-/// same features.
+/// A station of one rod on another one whose pipes or bend are of another length: as far between
+/// the same features.
 pub(super) fn moved(rod: &Rod, other: &Rod, station: f64) -> f64 {
     let features = |rod: &Rod| [0.0, rod.bend_start(), rod.bend_end(), rod.length()];
     let (own, others) = (features(rod), features(other));

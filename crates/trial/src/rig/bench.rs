@@ -20,9 +20,9 @@ use super::actual::Actual;
 use super::cosserat::{Body, Hinge};
 use super::direction::{direction, rotation, turn};
 use super::drawing::{Deviation, Drawing};
-use super::effect::{Dimension, Effect, End};
+use super::effect::{Dimension, Effect};
 use super::load_history::creep_compliance;
-use super::protocol::{Loading, Protocol};
+use super::protocol::{End, Loading, Protocol};
 
 /// A rod at a rig with what was done there.
 #[derive(Debug, Clone)]
@@ -98,7 +98,7 @@ impl Bench {
             false => self.actual.station(station),
         };
         let displaced = effects.iter().map(|effect| match effect {
-            Effect::Point { end: of, station: at, by } if *of == end && *at == station => *by,
+            Effect::Point { end: own, station: at, by } if *own == end && *at == station => *by,
             _ => 0.0,
         });
         (own + displaced.sum::<f64>()).clamp(0.0, rod.length())

@@ -27,7 +27,8 @@
 use std::f64::consts::PI;
 
 use super::bench::Bench;
-use super::effect::{Dimension, Effect, End};
+use super::effect::{Dimension, Effect};
+use super::protocol::End;
 use super::setup::Needs;
 use super::sizes::{ANGLE, LENGTH, PIPE, POINT};
 use crate::chance::{happens, log_uniform, one_of};

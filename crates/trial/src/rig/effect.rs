@@ -1,6 +1,6 @@
 //! What may be wrong with a rig, with its names and numbers as a diagnosis states them.
 
-use super::protocol::{AXES, Protocol};
+use super::protocol::{AXES, End, Protocol};
 use crate::effect_name::EffectName;
 use crate::place::{Axes, Place};
 use rodcal_base::units::{DEG, MM, UM, URAD_PER_NM};
@@ -12,15 +12,6 @@ pub enum Dimension {
     Leg(usize),
     /// Between the pipes.
     Angle,
-}
-
-/// What is at a station: loads or sensors.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum End {
-    /// Where loads act.
-    Load,
-    /// Where sensors read.
-    Reading,
 }
 
 /// Something that is wrong, SI.

@@ -4,7 +4,6 @@
 use std::fmt::Write;
 
 use super::drawing::rounded;
-use super::effect::End;
 use crate::place::Place;
 use rodcal_base::units::{MM, STANDARD_GRAVITY, UM};
 
@@ -71,6 +70,15 @@ impl Run {
         let Run { axis, sign, trial, run, zeroed, stations } = *self;
         Loading { axis, sign, load, trial, run, is_unloading, changed, time, zeroed, stations }
     }
+}
+
+/// What is at a station: loads or sensors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// Where loads act.
+    Load,
+    /// Where sensors read.
+    Reading,
 }
 
 /// A recording before anything is read.

@@ -229,8 +229,8 @@ impl Structure {
         varied
     }
 
-    /// By how much the parts change, m/N, where a number of the geometry is another one; `parts` are
-    /// those of the file.
+    /// By how much the parts change, m/N, where a number of the geometry is another one; `parts`
+    /// are those of the file.
     fn changes(&self, parts: &[Matrix3<f64>], softening: &Softening, variant: &Variant) -> Parts {
         let variation = &self.variations[variant.variation];
         let pipes = Softening { variants: Vec::new(), joints: Vec::new(), ..softening.clone() };

@@ -7,8 +7,8 @@
 //!
 //! Columns: stiffness, shear, joints along the rod, one axis' loads, one channel, loads and sensors
 //! turned; by themselves lengths, the angle and the points of loads and sensors; `own` is each
-//! line's own. How large they may be is a [`MOODS`] entry: as files are, some times that, much, and,
-//! one after another, one thing far off with the rest as files are.
+//! line's own. How large they may be is a [`MOODS`] entry: as files are, some times that, much,
+//! and, one after another, one thing far off with the rest as files are.
 //! Everything is relative to the rod, so that units do not matter, and the density is that of the
 //! slopes as recorded, so that no rescaling is favoured.
 

@@ -178,8 +178,9 @@ impl<'a> Pairs<'a> {
         stations
     }
 
-    /// The column of loads at the first of these stations and of sensors at the second that are `by`
-    /// (m) farther from the flange. Beyond the tip there is no rod: there its other side counts twice.
+    /// The column of loads at the first of these stations and of sensors at the second that are
+    /// `by` (m) farther from the flange. Beyond the tip there is no rod: there its other side
+    /// counts twice.
     fn moved(&self, data: &[Datum], rod: &Rod, stations: [f64; 2], by: f64) -> Option<Vec<f64>> {
         let tip = rod.length();
         let move_by = |station: f64, own: f64, shift: f64| match station == own {

@@ -10,8 +10,8 @@ use crate::rod::NominalNumber;
 use crate::statistics::Random;
 use crate::units::{DEG, MM};
 
-/// What a rig would show that loads and reads points of a rod: `columns` are those of the file, `read`
-/// the displacement per force of each of its lines, m/N.
+/// What a rig would show that loads and reads points of a rod: `columns` are those of the file,
+/// `read` the displacement per force of each of its lines, m/N.
 fn recorded(lines: &[(&str, Matrix3<f64>)], columns: &str) -> Readings {
     let mut random = Random::seeded(11, 0);
     let mut text = format!("trial,axis,load_n{columns},dx_um,dy_um,dz_um\n");
@@ -54,8 +54,8 @@ fn assert_within(finding: &Finding, number: &str, expected: f64) {
     assert!(own.low < expected && expected < own.high, "{number} {expected}: {own:?}");
 }
 
-/// Loads that hang before the tip, or beside it, where the file says nothing: the point is found, and
-/// what is not there stays near nothing.
+/// Loads that hang before the tip, or beside it, where the file says nothing: the point is found,
+/// and what is not there stays near nothing.
 #[test]
 fn loads_that_hang_elsewhere_are_found_and_are_no_softer_rod() {
     let rod = rod("");
@@ -129,8 +129,8 @@ fn own_of(rod: &Rod, place: &str) -> f64 {
     }
 }
 
-/// The point of loads whose station nobody stated is known to the uncertainty of lengths, and a point
-/// at the tip, beyond which there is no rod, as well as any other.
+/// The point of loads whose station nobody stated is known to the uncertainty of lengths, and a
+/// point at the tip, beyond which there is no rod, as well as any other.
 #[test]
 fn the_load_point_is_a_number_that_is_known_to_so_much() {
     let rod = rod("");

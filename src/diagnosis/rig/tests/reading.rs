@@ -205,8 +205,8 @@ fn temperatures_are_those_between_the_steps_of_the_display() {
     }
 }
 
-/// A zero of one run of five that was not taken, nearly as far off as the rod bends: no other run can
-/// confirm it, and it is named all the same.
+/// A zero of one run of five that was not taken, nearly as far off as the rod bends: no other run
+/// can confirm it, and it is named all the same.
 #[test]
 fn a_zero_of_one_run_needs_no_other_run() {
     let rod = rod("");

@@ -44,8 +44,8 @@ pub enum Limitation {
     /// A joint, from 0, with play, and poses, by their names, whose load is too small to say to
     /// which side it pulls.
     UnknownSide(usize, Vec<String>),
-    /// Another rod of the same folder, by its file, that these poses do not tell from the stated
-    /// one: they are so many times as probable with it.
+    /// Another rod of the same folder, by its file, that these poses cannot distinguish from the
+    /// stated one: they are so many times as probable with it.
     AnotherRod(String, f64),
     /// The poses are too few to hold any out.
     NoFoldsOfPoses,
@@ -149,8 +149,8 @@ impl fmt::Display for Limitation {
                 let which = if *odds < 1.0 { "less" } else { "more" };
                 write!(
                     f,
-                    "These poses do not tell the rod from that of {file}: with that one they are {times} times {which} \
-                     probable. Look which of the two was on the robot."
+                    "These poses cannot distinguish the rod from that of {file}: with that one they are {times} times \
+                     {which} probable. Look which of the two was on the robot."
                 )
             }
             Limitation::NoFoldsOfPoses => f.write_str(

@@ -9,8 +9,8 @@
 //! ln odds = ln p(poses | other rod) − ln p(poses | stated rod)
 //! ```
 //!
-//! From odds of 1000 on the other file is meant. Within that, and down to 1:20, these poses do not
-//! tell which of the two it was, and that is said.
+//! From odds of 1000 on the other file is meant. Within that, and down to 1:20, these poses cannot
+//! distinguish the two, and that is said.
 
 use super::Mended;
 use super::may_be_meant::{ComparedRods, in_other_units, log_probability};

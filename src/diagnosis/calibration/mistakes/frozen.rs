@@ -8,9 +8,10 @@
 //! rᵢ > 8·s,   min over q of rᵢ(q) < 8·s       s the scatter of the others, r the distance of a row
 //! ```
 //!
-//! One number moves a tip along a curve: three coordinates do not meet it by chance. Where the
-//! whole arm stands still in the file, any point is met, and that it is far out must do. What is
-//! the same number in all of these rows is another zero, and no joint that stood still.
+//! One number moves a tip along a curve: three coordinates do not meet it by chance. Where all
+//! joints show one value, some angles of theirs meet any point: there it is enough that the rows lie
+//! far out. What is the same number in all of these rows is another zero, and no joint that stood
+//! still.
 
 use super::draft::{Cell, Draft, DraftChange};
 use super::held::equal_neighbours;

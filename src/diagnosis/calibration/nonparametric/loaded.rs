@@ -39,7 +39,7 @@ fn most(context: &Context, j: usize) -> Option<f64> {
 fn waves(context: &Context, j: usize) -> Vec<Entry> {
     let Some(most) = most(context, j) else { return Vec::new() };
     let (low, high) = context.range(j);
-    // two frequencies are told apart over the range that differ by one cycle in it
+    // frequencies that differ by less than one cycle over the range are the same to these poses
     let per_cycle = (2.0 * (high - low) / TAU).ceil().max(1.0 / SCAN.1);
     let count = (SCAN.0 * per_cycle) as usize;
     let wave = |k: usize| {

@@ -9,7 +9,6 @@ use crate::diagnosis::rig::mechanics::structure::{End, Structure, Varied, tangen
 use crate::diagnosis::rig::model::{Body, RigModel};
 use crate::inference::{Candidate, Effect, Finding, Kind, Location, Parameter, Part, Reported, WrittenTo};
 use crate::spatial::Axis;
-use crate::units::MM;
 
 /// Along the rod as a share of its length: a hook or a stylus that is a tube's diameter away.
 const ALONG: f64 = 0.03;
@@ -19,6 +18,8 @@ const BESIDE: f64 = 0.5;
 /// take it for the point that was stated.
 const MOST: f64 = 0.2;
 const MOST_BESIDE: f64 = 3.0;
+/// A point that can move by less than this share of the rod's length is not tried along it.
+const LEAST: f64 = 1e-3;
 /// Of so many stations no one is tried by itself any more.
 const MOST_STATIONS: usize = 12;
 
@@ -142,7 +143,7 @@ fn along(structure: &mut Structure, end: End, station: f64, axes: [bool; 3]) -> 
     let length = rod.length();
     let bend = if station > rod.bend_end() { rod.bend_end() } else { rod.bend_start() };
     let most = (MOST * length).min((station - bend).abs()).min(station);
-    if most < MM {
+    if most < LEAST * length {
         return None;
     }
     let number = structure.add_variation(Varied::Along(end, station), most)?;

@@ -6,7 +6,7 @@
 //! load     u·C·F           all loads by one scale
 //! sensor   u·C·F           of one channel
 //! station  u·∂(C·F)/∂s     every stated station of a load or of a sensor
-//! load     u·∂(C·F)/∂s     of loads whose station no row states: they may not hang at the tip itself
+//! point    u·∂(C·F)/∂s     of loads whose station no row states: they may not hang at the tip itself
 //! clamp    as l1: a clamp that is farther out leaves a shorter rod
 //! ```
 

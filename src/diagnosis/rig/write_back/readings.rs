@@ -5,11 +5,12 @@ use nalgebra::DVector;
 use super::written_item::WrittenItem;
 use crate::diagnosis::rig::model::RigModel;
 use crate::spatial::Direction;
+use crate::units::UM;
 
-/// So many steps of what is written make a newton, and a metre: a nanometre is less than any sensor
-/// reads. A quotient of whole numbers is the number that its digits say.
+/// So many steps of what is written make a newton, and a micrometre: a nanometre is less than any
+/// sensor reads. A quotient of whole numbers is the number that its digits say.
 const STEPS_OF_LOAD: f64 = 1e6;
-const STEPS_OF_OFFSET: f64 = 1e9;
+const STEPS_OF_OFFSET: f64 = 1e3;
 
 /// The readings less `of_rig`, as a file.
 pub(super) fn without(
@@ -30,7 +31,9 @@ pub(super) fn without(
             continue;
         }
         if let Some(offset) = &mut readings.rows[datum.row - 1].offset[datum.channel.index()] {
-            *offset = ((*offset - change) * STEPS_OF_OFFSET).round() / STEPS_OF_OFFSET;
+            let steps = ((*offset - change) / UM * STEPS_OF_OFFSET).round();
+            // as a file is read: its digits, times the unit
+            *offset = steps / STEPS_OF_OFFSET * UM;
         }
     }
     let listed = |what: &str, list: &[String]| match list {

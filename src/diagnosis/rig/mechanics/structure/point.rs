@@ -43,6 +43,9 @@ impl Point {
 /// ```
 ///
 /// R, the rotation per moment, matters where both are beside the centreline, which nothing here is.
+///
+/// # Errors
+/// As [`RodModel::new`]: a rod that the beam model refuses, a station that is not on it.
 pub fn between(rod: &Rod, pairs: &[[Point; 2]]) -> Result<Parts> {
     let stations: Vec<f64> = pairs.iter().flatten().map(|point| point.station).collect();
     let model = RodModel::new(rod, &Physics::WHOLE, 1, &stations)?;

@@ -9,9 +9,9 @@
 //! ```
 //!
 //! One number moves a tip along a curve: three coordinates do not meet it by chance. Where all
-//! joints show one value, some angles of theirs meet any point: there it is enough that the rows lie
-//! far out. What is the same number in all of these rows is another zero, and no joint that stood
-//! still.
+//! joints show one value, some angles of theirs meet any point: there it is enough that the rows
+//! lie far out. What is the same number in all of these rows is another zero, and no joint that
+//! stood still.
 
 use super::draft::{Cell, Draft, DraftChange};
 use super::held::equal_neighbours;

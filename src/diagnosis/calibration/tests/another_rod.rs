@@ -16,7 +16,8 @@ fn with<const N: usize>(keys: [(&str, &str); N]) -> String {
 }
 
 /// What is said of a campaign that was recorded with `actual` and has the file `stated`, in whose
-/// folder there is `other`: findings with their rivals, and which rods these poses cannot distinguish.
+/// folder there is `other`: findings with their rivals, and which rods these poses cannot
+/// distinguish.
 fn said(actual: &str, stated: &str, other: &str, noise: f64) -> (Vec<Finding>, Vec<Limitation>) {
     let plan = Plan { poses_per_clamp: 20, sensor_noise: 0.0, repeatability: 0.0, ..Plan::default() };
     let campaign = with_rods(actual, stated, plan);

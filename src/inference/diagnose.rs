@@ -12,10 +12,12 @@ use crate::inference::held_out::{Theme, hold_out};
 use crate::inference::locate::{Structure, along, locate};
 use crate::inference::model::evidence::rms;
 use crate::inference::noise::in_common::wandering;
+use crate::inference::noise::own_noise::{CLEARLY, own_spread};
 use crate::inference::noise::scatter::{NoiseTest, Tails, in_spread};
 use crate::inference::noise::suspects::are_many;
 use crate::inference::search::Search;
 use crate::inference::search::findings::findings;
+use crate::inference::search::hidden_in_noise::hidden_in_noise;
 use crate::inference::search::parts::part;
 use crate::inference::search::pruning::{infer, settled};
 use crate::inference::search::selection::{DiscrepancyModel, Pairs};
@@ -28,6 +30,8 @@ use crate::statistics::{HALF_95, chi_squared_survival, student_t_quantile};
 const SHOWN_BY_REPEATS: f64 = 3.0;
 /// Zeros that scatter so many times as far as readings are something of their own.
 pub(crate) const ZEROS_APART: f64 = 4.0;
+/// Most times that the noise of each sensor is found anew.
+const NOISES: usize = 3;
 /// Ln odds from which on it is said what the nominal numbers explain.
 const WORTH_SAYING: f64 = 3.0;
 
@@ -85,12 +89,27 @@ pub fn diagnose(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
 }
 
 fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
+    diagnose_in(model, evidence, NOISES)
+}
+
+/// The same, with the noise of each sensor at most so many times anew.
+fn diagnose_in(model: &dyn ForwardModel, recorded: &Evidence, noises: usize) -> Diagnosis {
+    let (whole, evidence) = (model, recorded);
     let model = &Linearised::new(model);
     let folded = background::folded(evidence);
     let (settled, known) = settled(model, &folded.evidence);
     let evidence = &settled;
     let model = &model.in_parts(evidence, &evidence.fold);
     let (search, hypothesis, left_over) = infer(model, evidence, Pairs::Screened, known);
+    let longest = left_over.as_ref().and_then(DiscrepancyModel::curve).unwrap_or(&hypothesis);
+    let spread = || {
+        own_spread(evidence, &search.plain_residual(longest), CLEARLY)
+            .or_else(|| hidden_in_noise(model, &search, longest))
+    };
+    if let Some(spread) = (noises > 0).then(spread).flatten() {
+        let weight = spread.iter().map(|own| own.powi(-2)).collect();
+        return diagnose_in(whole, &Evidence { spread, weight, ..recorded.clone() }, noises - 1);
+    }
     let held_out = hold_out(model, evidence, &hypothesis.terms);
     let (hypothesis, left_over) =
         confirmed(model, &search, &folded, hypothesis, left_over, held_out.as_ref());

@@ -6,6 +6,7 @@
 pub(in crate::inference) mod findings;
 pub(in crate::inference) mod hidden_in_correlation;
 pub(in crate::inference) mod hidden_in_groups;
+pub(in crate::inference) mod hidden_in_noise;
 pub(in crate::inference) mod misread;
 pub(in crate::inference) mod pairs;
 pub(in crate::inference) mod parts;

@@ -77,13 +77,16 @@ fn basis(nominal: &DMatrix<f64>) -> DMatrix<f64> {
     eigen.eigenvectors.select_columns(&kept)
 }
 
-/// Gives the offsets, the last columns of the background, the size that goes with a noise.
+/// Gives the offsets, the last columns of the background, the size that goes with a noise: that of
+/// the data which share one.
 pub fn size_offsets(evidence: &mut Evidence, noise: f64) {
     let count = evidence.offsets.ncols();
     let first = evidence.background.ncols() - count;
     for k in 0..count {
-        let size = evidence.least_offset[k].hypot(OFFSET * noise);
-        let column = evidence.offsets.column(k) * size;
+        let offset = evidence.offsets.column(k);
+        let spread = offset.iter().zip(&evidence.spread).find(|(own, _)| **own != 0.0);
+        let own = spread.map_or(1.0, |(_, spread)| *spread) * noise;
+        let column = offset * evidence.least_offset[k].hypot(OFFSET * own);
         evidence.background.set_column(first + k, &column);
     }
 }

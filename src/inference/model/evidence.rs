@@ -45,6 +45,11 @@ pub struct Evidence {
     pub spread: Vec<f64>,
     /// True where somebody stated that too; else a stated noise is that of every datum.
     pub is_spread_stated: bool,
+    /// Data of the same number are those of one sensor, whose noise may be its own.
+    pub sensor: Vec<usize>,
+    /// The least that the noise of each datum can be, by the step of its display, and the most, by
+    /// what its sensor repeats; 0 and infinite where nothing says so.
+    pub noise_range: Vec<(f64, f64)>,
     /// How much each datum counts: 1/spread², and less where tails are heavy.
     pub weight: Vec<f64>,
     /// Variance of the errors that data share, over that of their own; `None` where it is to be
@@ -114,6 +119,8 @@ impl Evidence {
             is_robust: false,
             spread: vec![1.0; count],
             is_spread_stated: false,
+            sensor: vec![0; count],
+            noise_range: vec![(0.0, f64::INFINITY); count],
             weight: vec![1.0; count],
             shared_ratio: None,
             correlation: None,
@@ -164,6 +171,8 @@ impl Evidence {
             is_robust: self.is_robust,
             spread: rows.iter().map(|&row| self.spread[row]).collect(),
             is_spread_stated: self.is_spread_stated,
+            sensor: pick(&self.sensor),
+            noise_range: rows.iter().map(|&row| self.noise_range[row]).collect(),
             weight: rows.iter().map(|&row| self.weight[row]).collect(),
             shared_ratio: self.shared_ratio,
             correlation: self.correlation,

@@ -112,6 +112,12 @@ impl Tails {
         n * constant + residual.iter().map(tail).sum::<f64>()
     }
 
+    /// The likeliest scale of other residuals with the same tails.
+    pub fn scale_of(&self, residual: &DVector<f64>) -> f64 {
+        let residual = &residual.map(|r| r.hypot(self.rounding));
+        if self.freedom.is_infinite() { rms(residual) } else { scale(residual, self.freedom) }
+    }
+
     /// How much each datum counts.
     fn weights(&self, residual: &DVector<f64>) -> Vec<f64> {
         let weight = |r: &f64| match self.freedom.is_infinite() {

@@ -17,7 +17,7 @@
 //! twice the friction. Friction of one step of the loads looks like readings one row too low but
 //! for the rows after a reversal.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::effects::mistakes::ROW_MISTAKE;
 use super::super::numbering::numbered;
@@ -315,8 +315,22 @@ impl<'a> Sheet<'a> {
             }
         }
         let mut best = best?;
+        // a sensor that is read under loads along some axes only would be read under others
+        if self.lines_read(&best.owners) > self.lines_read(own) {
+            return None;
+        }
         best.explains = self.shown(&best)?;
         Some(best)
+    }
+
+    /// How many lines there are: channels that are read, by label.
+    fn lines_read(&self, owners: &[Owner]) -> usize {
+        let of_row = |(row, owner): (&Reading, &Owner)| {
+            let label = owner.map(|owner| self.label[owner.0]);
+            let read = row.offset.map(|offset| offset.is_some());
+            (0..read.len()).filter(move |&k| read[k]).filter_map(move |k| Some((label?, k)))
+        };
+        self.rows.iter().zip(owners).flat_map(of_row).collect::<BTreeSet<(usize, usize)>>().len()
     }
 
     /// The stretch by the lines through `owners`.

@@ -31,6 +31,7 @@ pub fn of_data(
     large: Option<DVector<f64>>,
 ) -> Evidence {
     let spread = spread::spread(data, header);
+    let (sensor, noise_range) = spread::sensors(data);
     let residual = DVector::from_iterator(data.len(), data.iter().map(|d| d.measured - d.predicted));
     let (offsets, least_offset) = zeros(data);
     Evidence {
@@ -52,6 +53,8 @@ pub fn of_data(
         fold: folds(data),
         weight: spread.iter().map(|own| own.powi(-2)).collect(),
         is_spread_stated: header.noise.is_some() && header.load_noise.is_some(),
+        sensor,
+        noise_range,
         spread,
         resolution: resolution(data),
         covariates: covariates(data),

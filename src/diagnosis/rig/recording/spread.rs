@@ -54,7 +54,7 @@ pub fn spread(data: &[Datum], header: &RigHeader) -> Vec<f64> {
     let stiffer = stiffer(data).map(|stiffer| if stiffer > ALIKE { stiffer } else { 1.0 });
     let stiff = |d: &Datum| if d.imposed.is_some() { stiffer[d.direction.axis.index()] } else { 1.0 };
     let cell = |d: &Datum| (stiff(d) > 1.0).then_some(d.direction.axis);
-    let sensor = numbered(data.iter().map(|d| (d.imposed.is_none().then(|| d.sensor()), cell(d))));
+    let sensor = numbers(data, &cell);
     let channel = numbered(data.iter().map(|d| (d.imposed.is_none().then_some(d.channel), cell(d))));
     let of_number = |numbers: &[usize], number: usize| {
         scatter(
@@ -70,6 +70,32 @@ pub fn spread(data: &[Datum], header: &RigHeader) -> Vec<f64> {
     let Some(usual) = usual(&scatters, &sensor) else { return data.iter().map(stiff).collect() };
     let beside = |number: usize| scatters[number].as_ref().map_or(1.0, |scatter| scatter.beside(&usual));
     data.iter().zip(&sensor).map(|(d, &number)| beside(number).max(stiff(d))).collect()
+}
+
+/// The number of the sensor of each datum, and the least and the most that the noise of that can
+/// be, m: it is no surer than its display, and none of its differences scatters by less, but by
+/// chance.
+pub fn sensors(data: &[Datum]) -> (Vec<usize>, Vec<(f64, f64)>) {
+    let stiffer = stiffer(data);
+    let sensor = numbers(data, &|d| {
+        (d.imposed.is_some() && stiffer[d.direction.axis.index()] > ALIKE).then_some(d.direction.axis)
+    });
+    let count = sensor.iter().max().map_or(0, |last| last + 1);
+    let range = |number: usize| {
+        let own: Vec<&Datum> =
+            data.iter().zip(&sensor).filter(|(_, own)| **own == number).map(|(d, _)| d).collect();
+        let most = lists(&own).iter().map(Scatter::most).fold(f64::INFINITY, f64::min);
+        (OF_STEP * resolution(own), most)
+    };
+    let ranges: Vec<(f64, f64)> = (0..count).map(range).collect();
+    let noise_range = sensor.iter().map(|&number| ranges[number]).collect();
+    (sensor, noise_range)
+}
+
+/// There is one load cell, and one sensor that is read at each of some stations; but loads are of
+/// a sensor of their own where they are of a `cell` of their own.
+fn numbers(data: &[Datum], cell: &dyn Fn(&Datum) -> Option<Axis>) -> Vec<usize> {
+    numbered(data.iter().map(|d| (d.imposed.is_none().then(|| d.sensor()), cell(d))))
 }
 
 /// By axis how much more a measured load, as it counts, is than the displacement that was imposed:
@@ -108,6 +134,11 @@ struct Scatter {
 }
 
 impl Scatter {
+    /// What it is at most, but by chance.
+    fn most(&self) -> f64 {
+        self.sigma * (SURE * OF_QUARTILE / (self.count as f64).sqrt()).exp()
+    }
+
     /// Over that of another one; 1 where the two may be the same.
     fn beside(&self, other: &Scatter) -> f64 {
         let ratio = self.sigma / other.sigma;
@@ -145,6 +176,18 @@ pub fn scatter_of(own: &[&Datum]) -> Option<f64> {
 
 /// Of the readings of one sensor; `None` of too few.
 fn scatter(own: &[&Datum]) -> Option<Scatter> {
+    let lists = lists(own);
+    let is_enough = |scatter: &&Scatter| scatter.count >= FEWEST;
+    let found = lists.iter().filter(is_enough).min_by(|a, b| a.sigma.total_cmp(&b.sigma))?;
+    if lists.iter().any(|other| other.beside(found) < 1.0) {
+        return None;
+    }
+    (found.sigma > 0.0).then_some(Scatter { ..*found })
+}
+
+/// What each kind of difference between the readings of one sensor scatters by, where there are
+/// some.
+fn lists(own: &[&Datum]) -> Vec<Scatter> {
     let by_axis = Axis::ALL.map(|axis| differences(axis, own));
     let of_list = |k: usize| {
         let of_axes = |left_out: Option<usize>| {
@@ -158,13 +201,7 @@ fn scatter(own: &[&Datum]) -> Option<Scatter> {
     };
     let least = OF_STEP * resolution(own.iter().copied());
     let of_list = |k| of_list(k).map(|own| Scatter { sigma: own.sigma.max(least), ..own });
-    let lists: Vec<Scatter> = (0..by_axis[0].len()).filter_map(of_list).collect();
-    let is_enough = |scatter: &&Scatter| scatter.count >= FEWEST;
-    let found = lists.iter().filter(is_enough).min_by(|a, b| a.sigma.total_cmp(&b.sigma))?;
-    if lists.iter().any(|other| other.beside(found) < 1.0) {
-        return None;
-    }
-    (found.sigma > 0.0).then_some(Scatter { ..*found })
+    (0..by_axis[0].len()).filter_map(of_list).collect()
 }
 
 fn quartile(differences: &[f64]) -> Option<Scatter> {

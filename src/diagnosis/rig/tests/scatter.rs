@@ -29,7 +29,7 @@ fn a_sensor_that_scatters_more_is_no_mismatch() {
     for seed in [1, 2, 3] {
         let found = diagnose(&recorded(seed, WORSE, 0.1), Some(&rod(""))).unwrap();
         assert!(!found.diagnosis.is_mismatch(), "{:?}", found.diagnosis.discrepancy);
-        let times = found.evidence.spread.iter().fold(0.0, |most: f64, own| most.max(*own));
+        let times = found.diagnosis.settled.0.spread.iter().fold(0.0, |most: f64, own| most.max(*own));
         assert!((0.6 * WORSE..1.5 * WORSE).contains(&times), "{times}");
     }
 }

@@ -9,7 +9,7 @@ use crate::units::{MM, UM, significant};
 
 /// What is said of them; nothing where all scatter alike.
 pub fn uneven(found: &RigDiagnosis) -> Option<Uneven> {
-    let evidence = &found.evidence;
+    let evidence = &found.diagnosis.settled.0;
     let noise = found.diagnosis.noise;
     let data = || found.model.data().iter().zip(&evidence.spread);
     let mut of_loads = data().filter(|(datum, _)| datum.imposed.is_some()).map(|(_, spread)| *spread);

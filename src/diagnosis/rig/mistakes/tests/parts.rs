@@ -389,3 +389,25 @@ fn a_display_at_its_end_displaces_no_rows() {
     }
     cases.check();
 }
+
+/// Each channel is read under loads along its own axis only, and one of them badly: where its
+/// readings stood two rows higher, they would be read under the other axis too.
+#[test]
+fn readings_of_a_bad_sensor_are_read_under_no_other_axis() {
+    let file = rod(ROD_5);
+    let mut moved = Vec::new();
+    for seed in 0..60 {
+        let mut random = Random::seeded(seed, 0);
+        let mut rows = Vec::new();
+        for (_, axis) in (0..5).flat_map(|trial| [Axis::Y, Axis::Z].map(|axis| (trial, axis))) {
+            for load in [9.5, 19.0, 28.5] {
+                let (c, noise) = if axis == Axis::Y { (21.0, 3.0) } else { (7.0, 20.0) };
+                let offset = (c * load + noise * random.normal()) * UM;
+                rows.push(Reading::new(Direction::along(axis), load).with_offset(axis, offset));
+            }
+        }
+        let mended = mended(&Readings::from_rows(rows).unwrap(), Some(&file), &[]).unwrap();
+        moved.extend(names(&mended).into_iter().filter(|name| name.starts_with("row_mistake")));
+    }
+    assert!(moved.is_empty(), "{moved:?}");
+}

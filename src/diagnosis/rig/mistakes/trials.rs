@@ -315,15 +315,23 @@ impl<'a> Table<'a> {
         mistakes: &'m [PossibleMistake],
     ) -> Option<InTrials> {
         let tried = |one: &'m PossibleMistake| {
-            let relabelling = &one.relabelling;
-            let compared = self.compared(class, right, relabelling, |line| acts_on(relabelling, line))?;
-            Some((one, RARE + one.log_prior - 0.5 * compared.misfit, compared.left))
+            let of_trials = |some: &[usize], relabelling: &Relabelling| {
+                self.compared(some, right, relabelling, |line| acts_on(&one.relabelling, line))
+            };
+            let both = |some: &[usize]| {
+                of_trials(some, &Relabelling::default()).zip(of_trials(some, &one.relabelling))
+            };
+            // a trial that has no line in common with the others of its class may be right
+            let is_better =
+                |trial: &usize| both(&[*trial]).is_some_and(|(before, after)| after.left < before.left);
+            let class: Vec<usize> = class.iter().copied().filter(is_better).collect();
+            let (before, after) = both(&class)?;
+            let odds = RARE + one.log_prior + 0.5 * (before.misfit - after.misfit);
+            Some(Tried { mistake: one, class, odds, before: before.left, left: after.left })
         };
-        let mut tried: Vec<(&PossibleMistake, f64, f64)> = mistakes.iter().filter_map(tried).collect();
-        tried.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let &(best, score, left) = tried.first()?;
-        let before = Relabelling::default();
-        let before = self.compared(class, right, &before, |line| acts_on(&best.relabelling, line))?;
+        let mut tried: Vec<Tried> = mistakes.iter().filter_map(tried).collect();
+        tried.sort_by(|a, b| b.odds.total_cmp(&a.odds));
+        let Tried { mistake: best, class, odds, before, left } = tried.first()?;
         // signs of single lines are looked at reading by reading where others show the line
         let is_shown = |k: usize| {
             let is_in_class = class.iter().any(|&trial| self.cells[trial][k].is_some());
@@ -332,13 +340,13 @@ impl<'a> Table<'a> {
         let is_of_a_line = best.effect == &SIGN_MISTAKE
             && best.relabelling.reading != [[-1.0; 3]; 3]
             && (0..self.lines.len()).any(is_shown);
-        if before.left < OFF || left > LEFT || score < ODDS - 0.5 * before.misfit || is_of_a_line {
+        if *before < OFF || *left > LEFT || *odds < ODDS || is_of_a_line {
             return None;
         }
         let place = self.place(class);
-        let near = tried.iter().skip(1).take_while(|(_, other, _)| *other > score - NO_WORSE);
+        let near = tried.iter().skip(1).take_while(|other| other.odds > odds - NO_WORSE);
         let here = |mistake: &PossibleMistake| mistake.location.clone().rows(&place);
-        let rivals = near.map(|(other, ..)| (other.effect, here(other)));
+        let rivals = near.map(|other| (other.mistake.effect, here(other.mistake)));
         let data: Vec<usize> = (0..self.data.len()).filter(|&i| class.contains(&self.trial[i])).collect();
         let most = class.iter().flat_map(|&trial| self.cells[trial].iter().flatten());
         let location = here(best);
@@ -397,6 +405,17 @@ fn acts_on(relabelling: &Relabelling, line: &Line) -> bool {
     let (axis, channel) = (line.axis.index(), line.channel.index());
     let is_as_it_was = relabelling.load[axis] == 1.0 && relabelling.reading[axis][channel] == 1.0;
     !is_as_it_was || relabelling.axis[axis] != axis || relabelling.channel[channel] != channel
+}
+
+/// A mistake in those trials of a class that it brings nearer to what is right.
+struct Tried<'a> {
+    mistake: &'a PossibleMistake,
+    class: Vec<usize>,
+    /// Ln of its odds against none.
+    odds: f64,
+    /// Shares of the squares of the deflections that are left without it and with it.
+    before: f64,
+    left: f64,
 }
 
 struct Compared {

@@ -94,6 +94,33 @@ fn what_a_trial_at_another_station_is_written_in_the_rod_file_shows() {
     cases.check();
 }
 
+/// The only trial at another station belongs to those that the rod file confirms as it does it, and
+/// not to one with which it has no line in common either, whose columns are exchanged.
+#[test]
+fn columns_of_one_trial_are_exchanged_where_another_one_has_a_station_of_its_own() {
+    let mut cases = Cases::default();
+    recordings(&[Bench::Full], 3, |what, file, clean| {
+        let near = 0.25 * file.length();
+        let pairs = [[None, None], [None, Some(near)]];
+        let physics = super::super::physics::Physics::new(file, &pairs).unwrap();
+        let mut readings = clean.clone();
+        for row in of_trial(&mut readings, "2") {
+            row.read_station = Some(near);
+            let k = row.direction.axis.index();
+            let [tip, own] = [0, 1].map(|at| physics.compliance(at));
+            let change = (own.column(k) - tip.column(k)) * (f64::from(row.direction.sign) * row.load);
+            row.offset.iter_mut().zip(change.iter()).for_each(|(offset, change)| {
+                offset.iter_mut().for_each(|offset| *offset += change);
+            });
+        }
+        cases.expect(&what, &readings, file, &[]);
+        of_trial(&mut readings, "1").for_each(|row| row.offset.swap(1, 2));
+        let expected = ["swap_mistake dy_um and dz_um, trial 1"];
+        cases.expect(&format!("{what} swapped"), &readings, file, &expected);
+    });
+    cases.check();
+}
+
 /// Two trials of three in kilograms: the rod file knows that it is these.
 #[test]
 fn the_rod_file_says_which_trials_are_right() {

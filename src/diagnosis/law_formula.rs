@@ -44,7 +44,13 @@ pub(super) fn formula(law: &Law, x: &str, is_signed: bool, direction: usize) -> 
     };
     match law.memory {
         Memory::Side => format!("side*({plain})"),
-        Memory::None | Memory::Stop | Memory::BoucWen(_) | Memory::Lag | Memory::Lagged => plain,
+        Memory::None
+        | Memory::Stop
+        | Memory::Play
+        | Memory::Stops(_)
+        | Memory::BoucWen(_)
+        | Memory::Lag
+        | Memory::Lagged => plain,
     }
 }
 

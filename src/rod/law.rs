@@ -51,6 +51,13 @@ pub enum LawMemory {
     /// The formula's variable is what a play leaves of it; the constant `r` is half the play's
     /// width, in the unit of the variable.
     Stop,
+    /// The formula's variable is where a play leaves it; the constant `r` is half the play's width.
+    Play,
+    /// The formula's variable is what two plays leave of it: the share `w1` of the one of half
+    /// width `r1`, all else of that of half width `r`.
+    TwoStops,
+    /// The same of three plays, `r1` with `w1`, `r2` with `w2`, and `r`.
+    ThreeStops,
     /// The formula's variable is z of a Bouc–Wen loop, dz/dx = 1 − (s·sgn(z·dx) + 1 − s)·|z/r|ⁿ;
     /// the constants `r`, in the unit of the variable, `n` and `s` = β/(β + γ).
     BoucWen,
@@ -230,14 +237,34 @@ impl LawVariable {
 
 impl LawMemory {
     /// All of them.
-    pub const ALL: [LawMemory; 3] = [LawMemory::Stop, LawMemory::BoucWen, LawMemory::Lag];
+    pub const ALL: [LawMemory; 6] = [
+        LawMemory::Stop,
+        LawMemory::Play,
+        LawMemory::TwoStops,
+        LawMemory::ThreeStops,
+        LawMemory::BoucWen,
+        LawMemory::Lag,
+    ];
 
     /// In files.
     pub fn key(self) -> &'static str {
         match self {
             LawMemory::Stop => "stop",
+            LawMemory::Play => "play",
+            LawMemory::TwoStops => "two_stops",
+            LawMemory::ThreeStops => "three_stops",
             LawMemory::BoucWen => "bouc_wen",
             LawMemory::Lag => "lag",
+        }
+    }
+
+    /// All keys, in a sentence: `"stop", "play" or "lag"`.
+    pub fn keys() -> String {
+        let quoted: Vec<String> =
+            LawMemory::ALL.iter().map(|memory| format!("\"{}\"", memory.key())).collect();
+        match quoted.split_last() {
+            Some((last, others)) => format!("{} or {last}", others.join(", ")),
+            None => String::new(),
         }
     }
 
@@ -247,8 +274,12 @@ impl LawMemory {
             MemoryConstant { name, range }
         }
         const R: MemoryConstant = own("r", None);
+        const FIRST: [MemoryConstant; 2] = [own("r1", None), own("w1", Some((0.0, 1.0)))];
+        const SECOND: [MemoryConstant; 2] = [own("r2", None), own("w2", Some((0.0, 1.0)))];
         match self {
-            LawMemory::Stop => &[R],
+            LawMemory::Stop | LawMemory::Play => &[R],
+            LawMemory::TwoStops => const { &[R, FIRST[0], FIRST[1]] },
+            LawMemory::ThreeStops => const { &[R, FIRST[0], FIRST[1], SECOND[0], SECOND[1]] },
             LawMemory::BoucWen => const { &[R, own("n", Some((1.0, 8.0))), own("s", Some((0.5, 1.0)))] },
             LawMemory::Lag => const { &[own("tau", None)] },
         }
@@ -343,6 +374,9 @@ impl fmt::Display for RodLaw {
         write!(f, ", for {symbol} from {} to {} {unit}", significant(low), significant(high))?;
         f.write_str(match self.memory {
             Some(LawMemory::Stop) => ", of what a play leaves of it",
+            Some(LawMemory::Play) => ", of where a play leaves it",
+            Some(LawMemory::TwoStops) => ", of what two plays leave of it",
+            Some(LawMemory::ThreeStops) => ", of what three plays leave of it",
             Some(LawMemory::BoucWen) => ", of what a Bouc–Wen loop makes of it",
             Some(LawMemory::Lag) => ", of what it lacks of its lagged self",
             None => "",

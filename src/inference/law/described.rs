@@ -7,7 +7,6 @@ use nalgebra::{DMatrix, DVector};
 use super::beyond::{apart, comparable, further};
 use super::choice::Choice;
 use super::measured::Measured;
-use super::memory::Memory;
 use super::proposed::{Beside, Law, LawRival, NextRecord, Point};
 use super::remainder::Remainder;
 use super::scan::{Scan, Scanned};
@@ -139,7 +138,7 @@ fn beside(known: &Known, base: &DVector<f64>) -> Beside {
 
 /// The best law and all that are not 20 times less likely, or as much more as the odds are unsure.
 pub(super) fn alike<'a>(found: &'a Scan, best: &Scanned) -> Vec<&'a Scanned> {
-    let unsure = if matches!(best.choice.memory, Memory::BoucWen(_)) { UNSURE } else { 0.0 };
+    let unsure = if best.choice.memory.has_shape() { UNSURE } else { 0.0 };
     let near = found.laws.iter().take_while(|law| law.log_odds > best.log_odds - APART.ln() - unsure);
     near.take(1 + MOST_RIVALS).collect()
 }

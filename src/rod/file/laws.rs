@@ -60,7 +60,7 @@ impl Check<'_> {
         if let Some(memory) = &raw.memory {
             let known = |own: &LawMemory| own.key() == memory.get_ref();
             let Some(of_key) = LawMemory::ALL.into_iter().find(known) else {
-                return Err(toml.is("law.memory", memory, "\"stop\", \"bouc_wen\" or \"lag\""));
+                return Err(toml.is("law.memory", memory, &LawMemory::keys()));
             };
             for needed in of_key.constants() {
                 let own = law.constants.iter().find(|own| own.name == needed.name);

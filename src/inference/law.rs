@@ -22,6 +22,7 @@
 mod beyond;
 mod bouc_wen;
 mod choice;
+mod constant;
 mod described;
 mod folds;
 mod form;
@@ -45,7 +46,8 @@ pub mod points;
 mod tests;
 
 pub use bouc_wen::LoopShape;
-pub use form::{Constant, Form, FormConstant, OpenEnd};
+pub use constant::{Constant, OpenEnd};
+pub use form::{Form, FormConstant};
 pub use memory::Memory;
 pub use proposal::propose;
 pub use proposed::{Beside, Law, LawRival, NextRecord, Point, Proposed, Refusal, Second};

@@ -51,6 +51,7 @@ impl Choice {
                             | Form::Rounded
                             | Form::Threshold
                             | Form::Harmonic
+                            | Form::Oscillation
                             | Form::Pull
                             | Form::PullBelow
                             | Form::PullAbove

@@ -3,7 +3,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::choice::{Choice, LawColumns};
-use super::form::{Constant, Form, FormConstant, OpenEnd};
+use super::constant::{Constant, OpenEnd};
+use super::form::{Form, FormConstant};
 use super::remainder::Remainder;
 use super::scan::{SAME, Scanned, at_point};
 use super::shape::OfShape;
@@ -133,6 +134,7 @@ fn names(site: &Site, form: Form) -> Vec<(String, String, String, f64)> {
     };
     let of_form: Vec<(&str, &str, i8)> = match form {
         Form::Harmonic => vec![("a", "cosine", 0), ("b", "sine", 0)],
+        Form::Oscillation => vec![("a", "cosine", 0), ("b", "sine", 0), ("c", "level", 0)],
         Form::Threshold => vec![("k", "slope", 1)],
         Form::Step => vec![("a", "height", 0)],
         Form::Saturation | Form::Approach | Form::Rounded => vec![("a", "final value", 0)],

@@ -32,9 +32,11 @@ const ENOUGH: f64 = 0.01;
 /// density.
 const DRAWN: usize = 64;
 const WIDER: f64 = 1.4;
-/// Times that they are drawn, each about the mean and by the covariance of those before: what has
-/// edges is not what second derivatives say (O. Cappé et al., J. Comput. Graph. Stat. 13, 2004).
-const LOOKS: usize = 3;
+/// Times that they are drawn at most, each about the mean and by the covariance of those before:
+/// what has edges is not what second derivatives say (O. Cappé et al., J. Comput. Graph. Stat. 13,
+/// 2004). It is enough once ln of the evidence changes by less.
+const LOOKS: usize = 8;
+const SETTLED: f64 = 0.05;
 
 /// The likeliest numbers.
 #[derive(Debug, Clone)]
@@ -111,7 +113,11 @@ impl Peak {
             let Some((points, log_evidence)) = looked(&middle, &spread, ranges, evidence, most) else {
                 break;
             };
+            let changed = (log_evidence - peak.log_evidence).abs();
             (peak.points, peak.log_evidence) = (points, log_evidence);
+            if changed < SETTLED {
+                break;
+            }
             let mut mean = DVector::zeros(middle.len());
             peak.points.iter().for_each(|(point, weight)| mean += point * *weight);
             let mut square = DMatrix::zeros(middle.len(), middle.len());

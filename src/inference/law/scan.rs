@@ -4,7 +4,6 @@ use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
 use super::choice::Choice;
-use super::form::Form;
 use super::peak::Peak;
 use super::posterior::Posterior;
 use super::remainder::Remainder;
@@ -81,7 +80,7 @@ pub(super) fn prior(sites: usize, fellows: usize) -> f64 {
 /// Where a law is likeliest. Of waves that explain the same the slowest has the widest peak in
 /// ln f, and so the most of the posterior.
 fn middle(choice: Choice, posterior: &Posterior) -> f64 {
-    let width = |u: f64| if choice.form == Form::Harmonic { -u } else { 0.0 };
+    let width = |u: f64| if choice.form.is_wave() { -u } else { 0.0 };
     let peaks = posterior.peaks(APART).into_iter();
     let highest = peaks.max_by(|a, b| (a.1 + width(a.0)).total_cmp(&(b.1 + width(b.0))));
     highest.unwrap_or_else(|| posterior.best()).0

@@ -69,6 +69,11 @@ impl Check<'_> {
                     return Err(toml.is("law.memory", memory, &expected));
                 }
             }
+            let value =
+                |name: &str| law.constants.iter().find(|own| own.name == name).map_or(0.0, |own| own.value);
+            if let Some(expected) = of_key.amiss(value) {
+                return Err(toml.is("law.memory", memory, &format!("with it constants {expected}")));
+            }
             law.memory = Some(of_key);
         }
         for k in 0..=TRIED {

@@ -46,6 +46,7 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         Form::Settling => format!("a·exp(−{size}/{corner}) + b"),
         Form::Logarithm => format!("a·{sign}ln(1 + {size}/{corner})"),
         Form::Harmonic => format!("a·(cos(2π·{x}/P) − 1) + b·sin(2π·{x}/P)"),
+        Form::Oscillation => format!("a·cos(2π·{x}/P) + b·sin(2π·{x}/P) + c"),
         Form::Polynomial(1) => format!("c1·{x}"),
         Form::Polynomial(2) => format!("c1·{x} + c2·{x}²"),
         _ => format!("c1·{x} + c2·{x}² + c3·{x}³"),
@@ -99,6 +100,9 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         Form::Settling if is_signed => format!(r"{sign}\left(a\,e^{{-{size}/{corner}}} + b\right)"),
         Form::Settling => format!(r"a\,e^{{-{size}/{corner}}} + b"),
         Form::Logarithm => format!(r"a{sign}\,\ln\left(1 + \frac{{{size}}}{{{corner}}}\right)"),
+        Form::Oscillation => {
+            format!(r"a\cos\frac{{2\pi {x}}}{{P}} + b\sin\frac{{2\pi {x}}}{{P}} + c")
+        }
         Form::Harmonic => {
             format!(r"a\left(\cos\frac{{2\pi {x}}}{{P}} - 1\right) + b\sin\frac{{2\pi {x}}}{{P}}")
         }

@@ -177,7 +177,8 @@ impl Peak {
 /// Points about a middle that are within the ranges, with their share of the posterior.
 type Points = Vec<(DVector<f64>, f64)>;
 
-/// Points about a middle by importance sampling, and ln of the evidence; `None` where they are none.
+/// Points about a middle by importance sampling, and ln of the evidence; `None` where there are
+/// none.
 fn looked(
     middle: &DVector<f64>,
     spread: &DMatrix<f64>,

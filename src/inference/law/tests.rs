@@ -136,7 +136,7 @@ fn a_curve_that_says_no_more_than_the_law_is_no_rival() {
         };
         let proposed = propose(&model, &diagnose(&model, &evidence), &site).unwrap();
         let law = proposed.law.unwrap_or_else(|refusal| panic!("{seed}: {refusal:?}"));
-        assert_eq!(law.form, Form::Harmonic);
+        assert!(law.form.is_wave(), "{:?}", law.form);
     }
 }
 

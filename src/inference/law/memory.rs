@@ -95,8 +95,8 @@ impl Memory {
             Memory::Stop | Memory::Play | Memory::Stops(_) | Memory::BoucWen(_) if site.moves.is_empty() => {
                 None
             }
-            // what a law only adds to is moved by no clearance, and friction with a compliance looks
-            // like one there
+            // what a law only adds to is moved by no clearance, and friction with a compliance
+            // looks like one there
             Memory::Play if !site.gives_way() => None,
             Memory::Stop | Memory::Play => Some((0.02, 0.5)),
             // the widest of several need not slip both ways

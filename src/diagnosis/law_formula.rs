@@ -24,6 +24,7 @@ pub(super) fn formula(law: &Law, x: &str, is_signed: bool, direction: usize) -> 
         (0..law.form.count()).map(term).collect::<Vec<_>>().join(" + ")
     };
     let b = if law.form.count() > 1 { named(1) } else { "" };
+    let c = if law.form.count() > 2 { named(2) } else { "" };
     let plain = match law.form {
         Form::Power => format!("{a}*{sign}({size}/{largest:?})^p"),
         Form::PowerAfterGap if is_signed => format!("{sign}({a}*({size}/{largest:?})^p + {b})"),
@@ -40,11 +41,18 @@ pub(super) fn formula(law: &Law, x: &str, is_signed: bool, direction: usize) -> 
         Form::Settling => format!("{a}*exp(-{size}/{corner}) + {b}"),
         Form::Logarithm => format!("{a}*{sign}ln(1 + {size}/{corner})"),
         Form::Harmonic => format!("{a}*(cos(2*pi*{x}/P) - 1) + {b}*sin(2*pi*{x}/P)"),
+        Form::Oscillation => format!("{a}*cos(2*pi*{x}/P) + {b}*sin(2*pi*{x}/P) + {c}"),
         Form::Polynomial(_) => powers(),
     };
     match law.memory {
         Memory::Side => format!("side*({plain})"),
-        Memory::None | Memory::Stop | Memory::BoucWen(_) | Memory::Lag | Memory::Lagged => plain,
+        Memory::None
+        | Memory::Stop
+        | Memory::Play
+        | Memory::Stops(_)
+        | Memory::BoucWen(_)
+        | Memory::Lag
+        | Memory::Lagged => plain,
     }
 }
 

@@ -8,7 +8,7 @@
 //!
 //! w what one unit of the law does to a datum (the place says it), x the variable, X its largest
 //! size, g the functions of the form, s its one number that is not linear (an exponent, a corner,
-//! a period, a lag; of a Bouc–Wen loop three). The amplitudes a are integrated in closed form
+//! a period, a lag; of a loop three, or five). The amplitudes a are integrated in closed form
 //! (`score.rs`), s on a grid with its prior, both beside the findings, the numbers of the files
 //! and the zeros, which are fitted anew with every law. What a form costs is in that integral; its
 //! prior is the share that its place and its fellows leave it.
@@ -22,6 +22,7 @@
 mod beyond;
 mod bouc_wen;
 mod choice;
+mod constant;
 mod described;
 mod folds;
 mod form;
@@ -35,7 +36,9 @@ mod proposal;
 mod proposed;
 mod remainder;
 mod scan;
+mod shape;
 mod site;
+mod stops;
 
 #[cfg(test)]
 pub mod points;
@@ -43,8 +46,10 @@ pub mod points;
 mod tests;
 
 pub use bouc_wen::LoopShape;
-pub use form::{Constant, Form, FormConstant, OpenEnd};
+pub use constant::{Constant, OpenEnd};
+pub use form::{Form, FormConstant};
 pub use memory::Memory;
 pub use proposal::propose;
 pub use proposed::{Beside, Law, LawRival, NextRecord, Point, Proposed, Refusal, Second};
 pub use site::{Course, Instant, Measure, Site};
+pub use stops::Stops;

@@ -10,10 +10,12 @@
 //! dx, dy, dz   to what a sensor shows                                  µm
 //! ```
 
+mod memory;
 mod place;
 
 use std::fmt;
 
+pub use self::memory::{LawMemory, MemoryConstant};
 pub use self::place::RodLawPlace;
 use crate::expression::{Expression, Fault};
 
@@ -42,48 +44,6 @@ pub enum LawVariable {
     SinceChange,
     /// The change of the load over the time that it took, positive where the load grew.
     LoadingSpeed,
-}
-
-/// How what went before acts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum LawMemory {
-    /// The formula's variable is what a play leaves of it; the constant `r` is half the play's
-    /// width, in the unit of the variable.
-    Stop,
-    /// The formula's variable is z of a Bouc–Wen loop, dz/dx = 1 − (s·sgn(z·dx) + 1 − s)·|z/r|ⁿ;
-    /// the constants `r`, in the unit of the variable, `n` and `s` = β/(β + γ).
-    BoucWen,
-    /// The formula's variable is what it lacks of its lagged self; the constant `tau` is the lag's
-    /// time, s.
-    Lag,
-}
-
-/// A constant that a memory needs.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MemoryConstant {
-    /// In files.
-    pub name: &'static str,
-    /// Its least and largest value; nothing where all above 0 are possible.
-    pub range: Option<(f64, f64)>,
-}
-
-impl MemoryConstant {
-    /// True for a value that it can have.
-    pub fn may_be(&self, value: f64) -> bool {
-        match self.range {
-            None => value > 0.0,
-            Some((low, high)) => low <= value && value <= high,
-        }
-    }
-
-    /// `r > 0`, `n from 1 to 8`.
-    pub fn description(&self) -> String {
-        match self.range {
-            None => format!("{} > 0", self.name),
-            Some((low, high)) => format!("{} from {low} to {high}", self.name),
-        }
-    }
 }
 
 /// A number of a law.
@@ -228,33 +188,6 @@ impl LawVariable {
     }
 }
 
-impl LawMemory {
-    /// All of them.
-    pub const ALL: [LawMemory; 3] = [LawMemory::Stop, LawMemory::BoucWen, LawMemory::Lag];
-
-    /// In files.
-    pub fn key(self) -> &'static str {
-        match self {
-            LawMemory::Stop => "stop",
-            LawMemory::BoucWen => "bouc_wen",
-            LawMemory::Lag => "lag",
-        }
-    }
-
-    /// The constants that are its own.
-    pub fn constants(self) -> &'static [MemoryConstant] {
-        const fn own(name: &'static str, range: Option<(f64, f64)>) -> MemoryConstant {
-            MemoryConstant { name, range }
-        }
-        const R: MemoryConstant = own("r", None);
-        match self {
-            LawMemory::Stop => &[R],
-            LawMemory::BoucWen => const { &[R, own("n", Some((1.0, 8.0))), own("s", Some((0.5, 1.0)))] },
-            LawMemory::Lag => const { &[own("tau", None)] },
-        }
-    }
-}
-
 impl RodLaw {
     /// A law at a place, its formula read.
     ///
@@ -341,12 +274,7 @@ impl fmt::Display for RodLaw {
         }
         let (symbol, unit, (low, high)) = (self.variable.symbol(), self.variable.unit(), self.range);
         write!(f, ", for {symbol} from {} to {} {unit}", significant(low), significant(high))?;
-        f.write_str(match self.memory {
-            Some(LawMemory::Stop) => ", of what a play leaves of it",
-            Some(LawMemory::BoucWen) => ", of what a Bouc–Wen loop makes of it",
-            Some(LawMemory::Lag) => ", of what it lacks of its lagged self",
-            None => "",
-        })
+        f.write_str(self.memory.map_or("", LawMemory::description))
     }
 }
 

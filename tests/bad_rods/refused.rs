@@ -782,6 +782,18 @@ fn a_law_says_what_is_wrong_where_in_its_formula() {
             "rod.toml:37:10: `law.memory` is \"stop\", expected with it a constant \
           r > 0",
         ),
+        (
+            "range = ",
+            "memory = \"slip\"\nrange = ",
+            "rod.toml:37:10: `law.memory` is \"slip\", expected \"stop\", \"play\", \"two_stops\", \
+          \"three_stops\", \"bouc_wen\" or \"lag\"",
+        ),
+        (
+            "range = [0.5, 6]\n",
+            "memory = \"two_stops\"\nrange = [0.5, 6]\n[[law.constant]]\nname = \"r1\"\nvalue = 3\n\
+          [[law.constant]]\nname = \"w1\"\nvalue = 0.4\n[[law.constant]]\nname = \"r\"\nvalue = 2\n",
+            "rod.toml:37:10: `law.memory` is \"two_stops\", expected with it constants r1 up to r",
+        ),
     ] {
         let text = with_law.replacen(piece, wrong, 1);
         assert_eq!(in_words(&read(&text).expect_err(&text)), expected, "{wrong}");

@@ -2,13 +2,13 @@
 
 use rodcal::rig;
 use rodcal::rig::readings::{Axis, Readings};
-use rodcal::rod::{Rod, RodLawPlace};
+use rodcal::rod::{LawMemory, Rod, RodLawPlace};
 use rodcal::units::UM;
 use rodcal_trial::rig::{CaseSpec, Effect, SimulatedCase};
 use serde_json::Value;
 
 use super::Answer;
-use super::laws::{spec, written};
+use super::laws::{Row, spec, written};
 
 /// Diagnosed, applied, and diagnosed again: rod file and readings as `--apply` writes them.
 fn applied(rod: &str, readings: &str) -> (Answer, Answer, Rod) {
@@ -67,6 +67,48 @@ fn a_stop_is_written_and_read() {
     let (rod, readings) = written(&spec(), 33, |row| 25.0 * (row.load / 4.0).min(1.0));
     let (before, after, _) = applied(&rod, &readings);
     assert_settled(&before, &after, 1.0);
+}
+
+/// Up to 10 N and back, in steps of half a newton.
+fn there_and_back() -> CaseSpec {
+    CaseSpec { loads: (1..=20).map(|k| 0.5 * f64::from(k)).collect(), unloading: true, ..spec() }
+}
+
+/// Where a play of half width r is on that way, N.
+fn play(row: &Row, half: f64) -> f64 {
+    if row.side > 0.0 { (row.load - half).max(0.0) } else { (row.load + half).min(10.0 - half) }
+}
+
+/// A clamp that slips at two loads, as (Prandtl and Ishlinskii) stops of 1.5 and 4 N side by side.
+#[test]
+fn a_clamp_that_slips_at_two_loads_is_written_and_read() {
+    let stop = |row: &Row, half: f64| row.load - play(row, half);
+    let (rod, readings) = written(&there_and_back(), 34, |row| 9.0 * stop(row, 1.5) + 6.0 * stop(row, 4.0));
+    let (before, after, again) = applied(&rod, &readings);
+    // zeros of the runs, and five numbers of a law that is up to 100 µm
+    assert_settled(&before, &after, 1.2);
+    let law = &before.json["law"];
+    assert_eq!((&law["memory"], &law["second"]), (&"two stop operators".into(), &Value::Null), "{law}");
+    assert_eq!(again.laws[0].memory, Some(LawMemory::TwoStops));
+    for (symbol, truth) in [("r1", 1.5), ("r", 4.0), ("w1", 0.6), ("c1", 15.0)] {
+        let all = law["constants"].as_array().unwrap();
+        let own = all.iter().find(|own| own["symbol"] == symbol).unwrap();
+        let [low, high] = ["lo", "hi"].map(|key| own[key].as_f64().unwrap());
+        // at the clamp, or at the root, where it is the moment's
+        if law["location"] == "clamp" || symbol == "w1" {
+            assert!(0.97 * low < truth && truth < 1.03 * high, "{symbol}: {own}");
+        }
+    }
+}
+
+/// A clamp with a clearance in which it stays where it was left.
+#[test]
+fn a_play_is_written_and_read() {
+    let (rod, readings) = written(&there_and_back(), 35, |row| 8.0 * play(row, 2.0));
+    let (before, after, again) = applied(&rod, &readings);
+    assert_settled(&before, &after, 1.0);
+    assert_eq!(before.json["law"]["memory"], "play operator", "{}", before.json["law"]);
+    assert_eq!(again.laws[0].memory, Some(LawMemory::Play));
 }
 
 /// Channel of the ripple, or the load: which of two laws one is.

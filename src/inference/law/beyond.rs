@@ -26,6 +26,8 @@ use crate::linalg::least_squares;
 const FURTHER: f64 = 1.5;
 /// Values of s by which its posterior counts.
 const DRAWS: usize = 24;
+/// Of the functions of a wave cosine and sine are one.
+const OF_A_WAVE: usize = 2;
 /// Standard deviations that count.
 const WIDE: f64 = 2.0;
 
@@ -79,7 +81,7 @@ fn out_of_step(law: &Law) -> Option<f64> {
     let count = law.form.count();
     let amplitudes = law.values.0.chunks(count).zip(&law.site.directions).map(|(own, (_, weights))| {
         let largest = weights.iter().fold(0.0, |most: f64, w| most.max(w.abs()));
-        own.iter().map(|a| a * a).sum::<f64>().sqrt() * largest
+        own.iter().take(OF_A_WAVE).map(|a| a * a).sum::<f64>().sqrt() * largest
     });
     let largest = law.site.largest() / law.site.variable.si;
     let phase = match period.also.is_empty() {

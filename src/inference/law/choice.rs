@@ -2,16 +2,12 @@
 
 use nalgebra::DMatrix;
 
-use super::bouc_wen::LoopShape;
 use super::form::{Form, FormConstant};
 use super::memory::Memory;
 use super::site::Site;
 
 /// Points of a first look at the number of a memory.
 const POINTS: usize = 21;
-/// Shapes of a first look at a loop.
-const SHARPNESSES: [f64; 3] = [1.0, 2.0, 5.0];
-const BALANCES: [f64; 2] = [0.55, 0.9];
 
 /// Columns of one and then of the other.
 pub(super) fn beside_each_other(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
@@ -55,13 +51,17 @@ impl Choice {
                             | Form::Rounded
                             | Form::Threshold
                             | Form::Harmonic
+                            | Form::Oscillation
                             | Form::Pull
                             | Form::PullBelow
                             | Form::PullAbove
                     ),
-                    Memory::Stop | Memory::BoucWen(_) | Memory::Lag | Memory::Lagged => {
-                        form == Form::Polynomial(1)
-                    }
+                    Memory::Stop
+                    | Memory::Play
+                    | Memory::Stops(_)
+                    | Memory::BoucWen(_)
+                    | Memory::Lag
+                    | Memory::Lagged => form == Form::Polynomial(1),
                 };
                 let choice = Choice { site: number, form, memory };
                 if is_of && !choice.grid(site).is_empty() {
@@ -80,7 +80,7 @@ impl Choice {
     /// What its number that is not linear is.
     pub fn constant(self) -> Option<FormConstant> {
         match self.memory {
-            Memory::Stop => Some(FormConstant::Play),
+            Memory::Stop | Memory::Play | Memory::Stops(_) => Some(FormConstant::Play),
             Memory::BoucWen(_) => Some(FormConstant::Yield),
             Memory::Lag | Memory::Lagged => Some(FormConstant::Lag),
             Memory::None | Memory::Side => self.form.constant(),
@@ -104,18 +104,9 @@ impl Choice {
         }
     }
 
-    /// Shapes of a first look at a loop, if it has one.
-    pub fn shapes(self) -> Vec<LoopShape> {
-        let of_sharpness = |sharpness: f64| BALANCES.map(|balance| LoopShape { sharpness, balance });
-        match self.memory.shape() {
-            None => Vec::new(),
-            Some(_) => SHARPNESSES.into_iter().flat_map(of_sharpness).collect(),
-        }
-    }
-
-    /// The same with a loop of this shape.
-    pub fn shaped(self, shape: LoopShape) -> Choice {
-        Choice { memory: Memory::BoucWen(shape), ..self }
+    /// The same with another memory of its kind.
+    pub fn remembering(self, memory: Memory) -> Choice {
+        Choice { memory, ..self }
     }
 
     /// The number at a coordinate, in the form's scale.

@@ -7,7 +7,6 @@ use nalgebra::{DMatrix, DVector};
 use super::beyond::{apart, comparable, further};
 use super::choice::Choice;
 use super::measured::Measured;
-use super::memory::Memory;
 use super::proposed::{Beside, Law, LawRival, NextRecord, Point};
 use super::remainder::Remainder;
 use super::scan::{Scan, Scanned};
@@ -32,7 +31,7 @@ const DRAWN: f64 = 0.2;
 /// Ln of the odds by which the probability of a loop may be off: its shape has two constants, of
 /// which Laplace's integral is that of a normal distribution, and they are near their bounds.
 const UNSURE: f64 = 1.0;
-/// Most rivals that are reported.
+/// Rivals that are reported, the likeliest, and the likeliest of every other place.
 const MOST_RIVALS: usize = 8;
 
 /// A model with what is known of its data.
@@ -139,9 +138,16 @@ fn beside(known: &Known, base: &DVector<f64>) -> Beside {
 
 /// The best law and all that are not 20 times less likely, or as much more as the odds are unsure.
 pub(super) fn alike<'a>(found: &'a Scan, best: &Scanned) -> Vec<&'a Scanned> {
-    let unsure = if matches!(best.choice.memory, Memory::BoucWen(_)) { UNSURE } else { 0.0 };
+    let unsure = if best.choice.memory.has_shape() { UNSURE } else { 0.0 };
     let near = found.laws.iter().take_while(|law| law.log_odds > best.log_odds - APART.ln() - unsure);
-    near.take(1 + MOST_RIVALS).collect()
+    let mut sites = Vec::new();
+    // many forms of one place do not hide another place
+    let is_said = |(number, law): &(usize, &Scanned)| {
+        let is_new = !sites.contains(&law.choice.site);
+        sites.push(law.choice.site);
+        is_new || *number <= MOST_RIVALS
+    };
+    near.enumerate().filter(is_said).map(|(_, law)| law).collect()
 }
 
 /// What the law follows, and what each datum says of its result there.

@@ -29,6 +29,8 @@ pub enum Form {
     Logarithm,
     /// a·(cos(2πf·ξ) − 1) + b·sin(2πf·ξ): readings are offsets from what was read at zero.
     Harmonic,
+    /// a·cos(2πf·ξ) + b·sin(2πf·ξ) + c: of time, for nobody knows when the zero was taken.
+    Oscillation,
     /// k·(1/(ξ₀ − ξ)² − 1/ξ₀²): a pull, from zero on, by what is at ξ₀ beyond all data.
     Pull,
     /// k/(ξ − ξ₀)²: the same of a place, ξ₀ below all data.
@@ -60,37 +62,6 @@ pub enum FormConstant {
     Lag,
 }
 
-/// A number of a law with its 95 % interval.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Constant {
-    /// Symbol in formulas: `c1`.
-    pub symbol: String,
-    /// What it is called in sentences.
-    pub name: String,
-    /// Unit for people; nothing for a plain number.
-    pub unit: String,
-    /// Estimate, in the unit.
-    pub value: f64,
-    /// Lower end of the 95 % interval, in the unit.
-    pub low: f64,
-    /// Upper end of the 95 % interval, in the unit.
-    pub high: f64,
-    /// Other values within the interval that these data do not distinguish from it, each apart from
-    /// the rest: periods that every reading meets alike.
-    pub also: Vec<f64>,
-    /// The end of the interval that these data do not determine: it is where the search ended.
-    pub open: Option<OpenEnd>,
-}
-
-/// An end of an interval that is none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum OpenEnd {
-    /// It may be as small as it likes.
-    Low,
-    /// It may be as large as it likes.
-    High,
-}
-
 /// Exponents that a law may have: roots to fourth powers.
 const EXPONENTS: (f64, f64) = (0.2, 4.0);
 /// Scale of an approach or a decay, as a share of X: below it is a step, above a straight line.
@@ -115,7 +86,7 @@ const LEVELS_OF_A_WAVE: usize = 6;
 
 impl Form {
     /// All of them.
-    pub const ALL: [Form; 17] = [
+    pub const ALL: [Form; 18] = [
         Form::Power,
         Form::PowerAfterGap,
         Form::Saturation,
@@ -127,6 +98,7 @@ impl Form {
         Form::Settling,
         Form::Logarithm,
         Form::Harmonic,
+        Form::Oscillation,
         Form::Pull,
         Form::PullBelow,
         Form::PullAbove,
@@ -210,7 +182,7 @@ impl Form {
             Form::Decay => "exponential decay",
             Form::Settling => "exponential decay to a level",
             Form::Logarithm => "logarithm",
-            Form::Harmonic => "harmonic",
+            Form::Harmonic | Form::Oscillation => "harmonic",
             Form::Pull | Form::PullBelow | Form::PullAbove => "inverse square of a distance",
             Form::Polynomial(1) => "straight line",
             Form::Polynomial(2) => "polynomial of the second degree",
@@ -221,13 +193,19 @@ impl Form {
     /// True for one that has neither a corner nor waves: two of them are no two laws.
     pub fn is_gradual(self) -> bool {
         let has_corner = matches!(self, Form::Saturation | Form::Threshold | Form::Step);
-        !has_corner && self != Form::Harmonic
+        !has_corner && !self.is_wave()
+    }
+
+    /// True for one with a period.
+    pub fn is_wave(self) -> bool {
+        matches!(self, Form::Harmonic | Form::Oscillation)
     }
 
     /// How many functions it has.
     pub fn count(self) -> usize {
         match self {
             Form::PowerAfterGap | Form::Harmonic | Form::Settling => 2,
+            Form::Oscillation => 3,
             Form::Polynomial(degree) => degree as usize,
             _ => 1,
         }
@@ -242,7 +220,7 @@ impl Form {
                 Some(FormConstant::Scale)
             }
             Form::Pull | Form::PullBelow | Form::PullAbove => Some(FormConstant::Pole),
-            Form::Harmonic => Some(FormConstant::Period),
+            Form::Harmonic | Form::Oscillation => Some(FormConstant::Period),
             Form::Polynomial(_) => None,
         }
     }
@@ -266,6 +244,10 @@ impl Form {
             Form::Harmonic => {
                 let (sin, cos) = (TAU * s * xi).sin_cos();
                 [cos - 1.0, sin, 0.0]
+            }
+            Form::Oscillation => {
+                let (sin, cos) = (TAU * s * xi).sin_cos();
+                [cos, sin, 1.0]
             }
             Form::Pull => one(odd(&|xi| inverse_square(s - xi) - inverse_square(s))),
             Form::PullBelow | Form::PullAbove => one(inverse_square(xi - s)),
@@ -292,7 +274,8 @@ impl Form {
             | Form::Settling
             | Form::Logarithm
             | Form::Rounded
-            | Form::Harmonic => true,
+            | Form::Harmonic
+            | Form::Oscillation => true,
             Form::Saturation
             | Form::Threshold
             | Form::Step
@@ -330,7 +313,7 @@ impl Form {
                 let inset = 0.5 / levels.min(POINTS) as f64 * (high - low);
                 between((low + inset, high - inset), POINTS)
             }
-            Form::Harmonic => {
+            Form::Harmonic | Form::Oscillation => {
                 // levels at even distances show one wave as well as another: all of them compete
                 let count = ((CYCLES.1 - CYCLES.0) / APART) as usize;
                 let frequency = |k: usize| (CYCLES.0 + APART * k as f64) / (high - low);
@@ -381,7 +364,7 @@ mod tests {
     #[test]
     fn corners_and_waves_are_laws_beside_others() {
         let gradual = Form::ALL.into_iter().filter(|form| form.is_gradual()).count();
-        assert_eq!(gradual, Form::ALL.len() - 4);
+        assert_eq!(gradual, Form::ALL.len() - 5);
         assert!(Form::Power.is_gradual() && !Form::Threshold.is_gradual() && !Form::Harmonic.is_gradual());
     }
 

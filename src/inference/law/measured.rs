@@ -2,10 +2,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::choice::LawColumns;
-use super::form::{Constant, Form, FormConstant, OpenEnd};
+use super::choice::{Choice, LawColumns};
+use super::constant::{Constant, OpenEnd};
+use super::form::{Form, FormConstant};
 use super::remainder::Remainder;
-use super::scan::{SAME, Scanned};
+use super::scan::{SAME, Scanned, at_point};
+use super::shape::OfShape;
 use super::site::Site;
 use crate::inference::search::selection::APART;
 use crate::statistics::{HALF_95, student_t_quantile};
@@ -51,7 +53,7 @@ impl Measured {
         Measured {
             amplitudes: (0..mode.len()).map(amplitude).collect(),
             constant,
-            of_loop: of_loop(law),
+            of_loop: of_loop(site, law),
             correlation: correlation(&covariance),
             values: (mode, choice.at(best)),
         }
@@ -70,7 +72,8 @@ fn moments(remainder: &Remainder, site: &Site, law: &Scanned, size: f64) -> (DVe
         let count = amplitudes.len();
         let mut values: Vec<f64> = factors.iter().zip(&amplitudes).map(|(f, a)| f * a).collect();
         values.extend(choice.constant().map(|what| along(site, what, choice.at(u))));
-        values.extend(choice.memory.shape().into_iter().flat_map(|own| [own.sharpness, own.balance]));
+        let of_shape = choice.memory.of_shape(width(site, choice, u)).into_iter();
+        values.extend(of_shape.map(|own| own.value));
         let values = DVector::from_vec(values);
         let mut square = &values * values.transpose();
         for i in 0..count {
@@ -131,6 +134,7 @@ fn names(site: &Site, form: Form) -> Vec<(String, String, String, f64)> {
     };
     let of_form: Vec<(&str, &str, i8)> = match form {
         Form::Harmonic => vec![("a", "cosine", 0), ("b", "sine", 0)],
+        Form::Oscillation => vec![("a", "cosine", 0), ("b", "sine", 0), ("c", "level", 0)],
         Form::Threshold => vec![("k", "slope", 1)],
         Form::Step => vec![("a", "height", 0)],
         Form::Saturation | Form::Approach | Form::Rounded => vec![("a", "final value", 0)],
@@ -163,24 +167,33 @@ fn bracketed(unit: &str) -> String {
     if unit.contains('·') || unit.contains('/') { format!("({unit})") } else { unit.to_owned() }
 }
 
+/// How wide its memory is, in the unit of the variable.
+fn width(site: &Site, choice: Choice, u: f64) -> f64 {
+    choice.at(u) * site.largest() / site.variable.si
+}
+
 /// The numbers of the shape of a loop.
-fn of_loop(law: &Scanned) -> Vec<Constant> {
-    let Some((peak, shape)) = law.peak.as_ref().zip(law.choice.memory.shape()) else { return Vec::new() };
-    let own = |symbol: &str, name: &str, value: f64, (low, high): (f64, f64)| Constant {
-        symbol: symbol.into(),
-        name: name.into(),
-        unit: String::new(),
-        value,
-        low: low.min(value),
-        high: high.max(value),
-        also: Vec::new(),
-        open: None,
+fn of_loop(site: &Site, law: &Scanned) -> Vec<Constant> {
+    let Some(peak) = &law.peak else { return Vec::new() };
+    let own = law.choice.memory.of_shape(width(site, law.choice, law.at));
+    let measured = |(k, own): (usize, OfShape)| {
+        let at = |point: &DVector<f64>| {
+            let (choice, u) = at_point(law.choice, point);
+            choice.memory.of_shape(width(site, choice, u)).get(k).map_or(own.value, |own| own.value)
+        };
+        let (low, high) = peak.interval(&at, own.range);
+        Constant {
+            unit: if own.is_width { site.variable.unit.to_owned() } else { String::new() },
+            value: own.value,
+            low: low.min(own.value),
+            high: high.max(own.value),
+            symbol: own.symbol,
+            name: own.name,
+            also: Vec::new(),
+            open: None,
+        }
     };
-    let (low, high) = peak.interval(1);
-    vec![
-        own("n", "sharpness", shape.sharpness, (low.exp(), high.exp())),
-        own("s", "share of β", shape.balance, peak.interval(2)),
-    ]
+    own.into_iter().enumerate().map(measured).collect()
 }
 
 /// The number that is not linear, in units for people.

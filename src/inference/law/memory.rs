@@ -2,6 +2,7 @@
 
 use super::bouc_wen::{Loop, LoopShape};
 use super::site::{Course, Instant, Site};
+use super::stops::{MOST, Stops};
 
 /// How what went before acts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +15,10 @@ pub enum Memory {
     /// A stop operator: the law follows x − P_r\[x\], P_r a play of half width r (A. Visintin,
     /// *Differential Models of Hysteresis*, Springer 1994, ch. III).
     Stop,
+    /// P_r\[x\] itself: what is moved through a play of half width r, and stays where it was left.
+    Play,
+    /// Several stop operators side by side, the widest of half width r: see [`Stops`].
+    Stops(Stops),
     /// z of a Bouc–Wen loop that yields at r: see [`LoopShape`].
     BoucWen(LoopShape),
     /// What a first-order lag of time τ still lacks: x − x̃, dx̃/dt = (x − x̃)/τ.
@@ -28,10 +33,13 @@ const LONGER: f64 = 5.0;
 
 impl Memory {
     /// All of them.
-    pub const ALL: [Memory; 6] = [
+    pub const ALL: [Memory; 9] = [
         Memory::None,
         Memory::Side,
         Memory::Stop,
+        Memory::Play,
+        Memory::Stops(Stops::TWO),
+        Memory::Stops(Stops::THREE),
         Memory::BoucWen(LoopShape::MIDDLE),
         Memory::Lag,
         Memory::Lagged,
@@ -43,6 +51,9 @@ impl Memory {
             Memory::None => "none",
             Memory::Side => "sign of the last move",
             Memory::Stop => "stop operator",
+            Memory::Play => "play operator",
+            Memory::Stops(stops) if stops.count() == 2 => "two stop operators",
+            Memory::Stops(_) => "three stop operators",
             Memory::BoucWen(_) => "Bouc–Wen loop",
             Memory::Lag => "first-order lag",
             Memory::Lagged => "lagged self",
@@ -53,21 +64,21 @@ impl Memory {
     pub fn has_constant(self) -> bool {
         match self {
             Memory::None | Memory::Side => false,
-            Memory::Stop | Memory::BoucWen(_) | Memory::Lag | Memory::Lagged => true,
-        }
-    }
-
-    /// The shape of its loop, where it has one.
-    pub fn shape(self) -> Option<LoopShape> {
-        match self {
-            Memory::BoucWen(shape) => Some(shape),
-            Memory::None | Memory::Side | Memory::Stop | Memory::Lag | Memory::Lagged => None,
+            Memory::Stop
+            | Memory::Play
+            | Memory::Stops(_)
+            | Memory::BoucWen(_)
+            | Memory::Lag
+            | Memory::Lagged => true,
         }
     }
 
     /// True for the same, whatever the shape of its loop.
     pub fn is(self, other: Memory) -> bool {
-        std::mem::discriminant(&self) == std::mem::discriminant(&other)
+        match (self, other) {
+            (Memory::Stops(one), Memory::Stops(other)) => one.count() == other.count(),
+            _ => std::mem::discriminant(&self) == std::mem::discriminant(&other),
+        }
     }
 
     /// Range of its number at a site, r in units of X or τ in s; `None` where it cannot be seen.
@@ -76,9 +87,20 @@ impl Memory {
             Memory::None => Some((0.0, 0.0)),
             Memory::Side => site.moves.iter().any(|way| *way < 0.0).then_some((0.0, 0.0)),
             // what never turns round remembers nothing that the variable itself does not say
-            Memory::Stop | Memory::BoucWen(_) | Memory::Lag if !site.moves.is_empty() && !turns(site) => None,
-            Memory::Stop | Memory::BoucWen(_) if site.moves.is_empty() => None,
-            Memory::Stop => Some((0.02, 0.5)),
+            Memory::Stop | Memory::Play | Memory::Stops(_) | Memory::BoucWen(_) | Memory::Lag
+                if !site.moves.is_empty() && !turns(site) =>
+            {
+                None
+            }
+            Memory::Stop | Memory::Play | Memory::Stops(_) | Memory::BoucWen(_) if site.moves.is_empty() => {
+                None
+            }
+            // what a law only adds to is moved by no clearance, and friction with a compliance
+            // looks like one there
+            Memory::Play if !site.gives_way() => None,
+            Memory::Stop | Memory::Play => Some((0.02, 0.5)),
+            // the widest of several need not slip both ways
+            Memory::Stops(_) => Some((0.02, 1.0)),
             // it is nearly a straight line up to r, and bends from half of that on
             Memory::BoucWen(_) => Some((0.02, 1.0)),
             // of a load it is what the load itself is, less what it lacks
@@ -112,6 +134,19 @@ impl Memory {
                     x - *state
                 };
                 (along(site, |start| start, stop), None)
+            }
+            Memory::Play => {
+                let half = constant * site.largest();
+                let play = |state: &mut f64, x: f64, _: f64| {
+                    *state = state.clamp(x - half, x + half);
+                    *state
+                };
+                (along(site, |start| start, play), None)
+            }
+            Memory::Stops(stops) => {
+                let half = constant * site.largest();
+                let follow = |plays: &mut [f64; MOST], x: f64, _: f64| stops.follow(plays, x, half);
+                (along(site, |start| [start; MOST], follow), None)
             }
             Memory::BoucWen(shape) => {
                 let (yielding, of_shape) = (constant * site.largest(), Loop::new(shape));

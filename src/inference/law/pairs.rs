@@ -1,6 +1,6 @@
 //! Where to begin with two laws that only together are what the data show.
 //!
-//! Two time constants, or two slips, at one place make a curve together. The likeliest law alone
+//! Two time constants at one place make a curve together. The likeliest law alone
 //! has a number between both, beside which the second one is no other. So all pairs of first looks
 //! at what is remembered at a place are tried together; the better one of the likeliest pair is
 //! the first law.
@@ -39,9 +39,8 @@ pub(super) fn beginning(known: &Known, found: &Scan, least: f64) -> Option<Scann
 /// The better one of the likeliest pair at a site, and about the ln odds of both together.
 fn likeliest_pair(known: &Known, found: &Scan, number: usize) -> Option<(Scanned, f64)> {
     let (site, size) = (&known.sites[number], known.data.size);
-    let is_remembered = |choice: &Choice| {
-        choice.form == Form::Polynomial(1) && matches!(choice.memory, Memory::Stop | Memory::Lagged)
-    };
+    let is_remembered =
+        |choice: &Choice| choice.form == Form::Polynomial(1) && choice.memory == Memory::Lagged;
     let laws: Vec<&Scanned> =
         found.laws.iter().filter(|law| law.choice.site == number && is_remembered(&law.choice)).collect();
     let points: Vec<(&Scanned, f64)> =

@@ -15,7 +15,7 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::linalg::positive_definite_inverse;
 
@@ -28,104 +28,115 @@ const DIFFERENCE: (f64, f64) = (1e-4, 0.1);
 /// A step that gains less is the last one.
 const ENOUGH: f64 = 0.01;
 
-/// Points that are drawn, and how much wider than the normal density.
-const DRAWN: usize = 128;
+/// Points that are drawn for each number beyond the first, and how much wider than the normal
+/// density.
+const DRAWN: usize = 64;
 const WIDER: f64 = 1.4;
-
-/// Range of each number.
-pub(super) type Ranges = [(f64, f64); 3];
+/// Times that they are drawn at most, each about the mean and by the covariance of those before:
+/// what has edges is not what second derivatives say (O. Cappé et al., J. Comput. Graph. Stat. 13,
+/// 2004). It is enough once ln of the evidence changes by less.
+const LOOKS: usize = 8;
+const SETTLED: f64 = 0.05;
 
 /// The likeliest numbers.
 #[derive(Debug, Clone)]
 pub(super) struct Peak {
-    pub at: Vector3<f64>,
+    pub at: DVector<f64>,
     /// Ln of the evidence, averaged over the prior.
     pub log_evidence: f64,
     /// Ln of the evidence there.
     pub highest: f64,
     /// Points with what share of the posterior each stands for.
-    points: Vec<(Vector3<f64>, f64)>,
+    points: Vec<(DVector<f64>, f64)>,
 }
 
 impl Peak {
-    /// Uphill from `start`; `evidence` of many points at once.
-    pub fn from(start: Vector3<f64>, ranges: Ranges, evidence: &dyn Fn(&[Vector3<f64>]) -> Vec<f64>) -> Peak {
-        let width = Vector3::from_fn(|k, _| ranges[k].1 - ranges[k].0);
-        let within = |point: Vector3<f64>| bounded(point, &ranges);
-        let mut steps = width * DIFFERENCE.1;
+    /// Uphill from `start`, each number within its range; `evidence` of many points at once.
+    pub fn from(
+        start: DVector<f64>,
+        ranges: &[(f64, f64)],
+        evidence: &dyn Fn(&[DVector<f64>]) -> Vec<f64>,
+    ) -> Peak {
+        let count = ranges.len();
+        let width = DVector::from_fn(count, |k, _| ranges[k].1 - ranges[k].0);
+        let within = |point: DVector<f64>| bounded(point, ranges);
+        let mut steps = &width * DIFFERENCE.1;
         let mut at = within(start);
-        let mut curved = curvature(at, &steps, &ranges, evidence);
+        let mut curved = curvature(&at, &steps, ranges, evidence);
         // where nothing is gained the differences may have been too wide
         let mut idle = 0;
         for _ in 0..ROUNDS {
             let largest = curved.hessian.diagonal().amax().max(f64::MIN_POSITIVE);
-            let tried: Vec<Vector3<f64>> = DAMPINGS
+            let bowl = curved.bowl();
+            let tried: Vec<DVector<f64>> = DAMPINGS
                 .iter()
                 .filter_map(|damping| {
                     let scale =
-                        Matrix3::from_diagonal(&width.map(|w| (damping * largest).max(1.0 / (w * w))));
-                    Some(within(at + (curved.bowl() + scale).try_inverse()? * curved.gradient))
+                        DMatrix::from_diagonal(&width.map(|w| (damping * largest).max(1.0 / (w * w))));
+                    Some(within(&at + (&bowl + scale).try_inverse()? * &curved.gradient))
                 })
                 .collect();
             let values = evidence(&tried);
             let best = tried.into_iter().zip(values).max_by(|a, b| a.1.total_cmp(&b.1));
-            let gained = best.map_or(0.0, |(_, value)| value - curved.value);
+            let gained = best.as_ref().map_or(0.0, |(_, value)| value - curved.value);
             if let Some((point, _)) = best.filter(|_| gained > 0.0) {
                 at = point;
             }
-            for k in 0..3 {
+            for k in 0..count {
                 let sd = curved.hessian[(k, k)].max(f64::MIN_POSITIVE).sqrt().recip();
                 steps[k] = sd.clamp(DIFFERENCE.0 * width[k], DIFFERENCE.1 * width[k]);
             }
-            curved = curvature(at, &steps, &ranges, evidence);
+            curved = curvature(&at, &steps, ranges, evidence);
             idle = if gained < ENOUGH { idle + 1 } else { 0 };
             if idle > 2 {
                 break;
             }
         }
-        let prior = Matrix3::from_diagonal(&width.map(|w| 12.0 / (w * w)));
+        let prior = DMatrix::from_diagonal(&width.map(|w| 12.0 / (w * w)));
         let precision = curved.bowl() + prior;
-        let covariance =
-            positive_definite_inverse(&nalgebra::DMatrix::from_iterator(3, 3, precision.iter().copied()))
-                .map_or_else(Matrix3::zeros, |(inverse, _)| Matrix3::from_fn(|i, j| inverse[(i, j)]));
-        Peak::around(at, covariance * WIDER.powi(2), ranges, evidence, curved.value)
+        let covariance = positive_definite_inverse(&precision)
+            .map_or_else(|| DMatrix::zeros(count, count), |(inverse, _)| inverse);
+        Peak::around(at, covariance, ranges, evidence, curved.value)
     }
 
     /// What is around the likeliest numbers, whose ln evidence is `most`.
     fn around(
-        at: Vector3<f64>,
-        spread: Matrix3<f64>,
-        ranges: Ranges,
-        evidence: &dyn Fn(&[Vector3<f64>]) -> Vec<f64>,
+        at: DVector<f64>,
+        covariance: DMatrix<f64>,
+        ranges: &[(f64, f64)],
+        evidence: &dyn Fn(&[DVector<f64>]) -> Vec<f64>,
         most: f64,
     ) -> Peak {
-        let volume: f64 = ranges.iter().map(|(low, high)| high - low).product();
-        let alone = Peak { at, log_evidence: most, highest: most, points: vec![(at, 1.0)] };
-        let Some(root) = spread.cholesky().map(|cholesky| cholesky.l()) else { return alone };
-        // −ln q of z, but for its constant
-        let drawn = (1..=DRAWN).map(normal).map(|z| (at + root * z, 0.5 * z.norm_squared()));
-        let is_within = |point: &Vector3<f64>| bounded(*point, &ranges) == *point;
-        let drawn: Vec<(Vector3<f64>, f64)> = drawn.filter(|(point, _)| is_within(point)).collect();
-        let values = evidence(&drawn.iter().map(|(point, _)| *point).collect::<Vec<_>>());
-        let weighted = drawn.iter().zip(values).map(|((point, rare), g)| (*point, (g - most + rare).exp()));
-        let mut points: Vec<(Vector3<f64>, f64)> = weighted.filter(|(_, w)| w.is_finite()).collect();
-        let whole: f64 = points.iter().map(|(_, weight)| weight).sum();
-        if whole <= 0.0 {
-            return alone;
+        let mut peak = Peak { points: vec![(at.clone(), 1.0)], at, log_evidence: most, highest: most };
+        let (mut middle, mut spread) = (peak.at.clone(), covariance);
+        for _ in 0..LOOKS {
+            let Some((points, log_evidence)) = looked(&middle, &spread, ranges, evidence, most) else {
+                break;
+            };
+            let changed = (log_evidence - peak.log_evidence).abs();
+            (peak.points, peak.log_evidence) = (points, log_evidence);
+            if changed < SETTLED {
+                break;
+            }
+            let mut mean = DVector::zeros(middle.len());
+            peak.points.iter().for_each(|(point, weight)| mean += point * *weight);
+            let mut square = DMatrix::zeros(middle.len(), middle.len());
+            for (point, weight) in &peak.points {
+                let off = point - &mean;
+                square += &off * off.transpose() * *weight;
+            }
+            (middle, spread) = (mean, square);
         }
-        points.iter_mut().for_each(|(_, weight)| *weight /= whole);
-        let density = TAU.powf(1.5) * root.determinant();
-        let log_evidence = most + (whole / DRAWN as f64 * density / volume).ln();
-        Peak { at, log_evidence, highest: most, points }
+        peak
     }
 
     /// Points that stand for as much of it each.
-    pub fn even(&self, count: usize) -> Vec<Vector3<f64>> {
+    pub fn even(&self, count: usize) -> Vec<DVector<f64>> {
         let (mut next, mut below, mut even) = (0, 0.0, Vec::with_capacity(count));
         for (point, weight) in &self.points {
             below += weight;
             while next < count && (next as f64 + 0.5) / count as f64 <= below {
-                even.push(*point);
+                even.push(point.clone());
                 next += 1;
             }
         }
@@ -139,9 +150,10 @@ impl Peak {
         (mean, square.sqrt())
     }
 
-    /// The 95 % interval of one of them.
-    pub fn interval(&self, k: usize) -> (f64, f64) {
-        let mut by_size: Vec<(f64, f64)> = self.points.iter().map(|(point, w)| (point[k], *w)).collect();
+    /// The 95 % interval of what is made of them, `ends` the ends of its range: the shortest of a
+    /// few, for one of quantiles alone never holds what is at an end.
+    pub fn interval(&self, value: &dyn Fn(&DVector<f64>) -> f64, ends: Option<(f64, f64)>) -> (f64, f64) {
+        let mut by_size: Vec<(f64, f64)> = self.points.iter().map(|(point, w)| (value(point), *w)).collect();
         by_size.sort_by(|a, b| a.0.total_cmp(&b.0));
         let below = |p: f64| {
             let mut sum = 0.0;
@@ -149,15 +161,57 @@ impl Peak {
                 sum += weight;
                 sum >= p
             });
-            found.or(by_size.last()).map_or(self.at[k], |point| point.0)
+            found.or(by_size.last()).map_or_else(|| value(&self.at), |point| point.0)
         };
-        (below(0.025), below(0.975))
+        let mut shortest = (below(0.025), below(0.975));
+        let Some((lowest, highest)) = ends else { return shortest };
+        for (low, high) in [(lowest, below(0.95)), (below(0.05), highest)] {
+            if high - low < shortest.1 - shortest.0 {
+                shortest = (low, high);
+            }
+        }
+        shortest
     }
 }
 
-/// Point number k of an even sequence of the standard normal (J. H. Halton 1960; G. E. P. Box, M.
-/// E. Muller 1958).
-fn normal(k: usize) -> Vector3<f64> {
+/// Points about a middle that are within the ranges, with their share of the posterior.
+type Points = Vec<(DVector<f64>, f64)>;
+
+/// Points about a middle by importance sampling, and ln of the evidence; `None` where there are
+/// none.
+fn looked(
+    middle: &DVector<f64>,
+    spread: &DMatrix<f64>,
+    ranges: &[(f64, f64)],
+    evidence: &dyn Fn(&[DVector<f64>]) -> Vec<f64>,
+    most: f64,
+) -> Option<(Points, f64)> {
+    let volume: f64 = ranges.iter().map(|(low, high)| high - low).product();
+    let (count, number) = (ranges.len(), DRAWN * (ranges.len() - 1));
+    let root = (spread * WIDER.powi(2)).cholesky()?.l();
+    // −ln q of z, but for its constant
+    let drawn = (1..=number).map(|k| normal(k, count));
+    let drawn = drawn.map(|z| (middle + &root * &z, 0.5 * z.norm_squared()));
+    let is_within = |point: &DVector<f64>| bounded(point.clone(), ranges) == *point;
+    let (drawn, rare): (Vec<DVector<f64>>, Vec<f64>) = drawn.filter(|(point, _)| is_within(point)).unzip();
+    let values = evidence(&drawn);
+    let weights = values.into_iter().zip(rare).map(|(g, rare)| (g - most + rare).exp());
+    let mut points: Points = drawn.into_iter().zip(weights).filter(|(_, w)| w.is_finite()).collect();
+    let whole: f64 = points.iter().map(|(_, weight)| weight).sum();
+    if whole <= 0.0 {
+        return None;
+    }
+    points.iter_mut().for_each(|(_, weight)| *weight /= whole);
+    let density = TAU.powf(0.5 * count as f64) * root.determinant();
+    Some((points, most + (whole / number as f64 * density / volume).ln()))
+}
+
+/// Primes, as many as numbers and one more.
+const PRIMES: [usize; 6] = [2, 3, 5, 7, 11, 13];
+
+/// Point number k of an even sequence of the standard normal in so many dimensions, six at most (J.
+/// H. Halton 1960; G. E. P. Box, M. E. Muller 1958).
+fn normal(k: usize, count: usize) -> DVector<f64> {
     let halton = |base: usize| {
         let (mut value, mut share, mut rest) = (0.0, 1.0, k);
         while rest > 0 {
@@ -167,72 +221,93 @@ fn normal(k: usize) -> Vector3<f64> {
         }
         value
     };
-    let [a, b, c, d] = [2, 3, 5, 7].map(halton);
-    let (radius, other) = ((-2.0 * (1.0 - a).ln()).sqrt(), (-2.0 * (1.0 - c).ln()).sqrt());
-    Vector3::new(radius * (TAU * b).cos(), radius * (TAU * b).sin(), other * (TAU * d).cos())
+    let pair = |bases: &[usize]| {
+        let (a, b) = (halton(bases[0]), halton(bases[1]));
+        let (radius, turn) = ((-2.0 * (1.0 - a).ln()).sqrt(), TAU * b);
+        [radius * turn.cos(), radius * turn.sin()]
+    };
+    DVector::from_iterator(count, PRIMES.chunks(2).flat_map(pair).take(count))
 }
 
-fn bounded(point: Vector3<f64>, ranges: &Ranges) -> Vector3<f64> {
-    Vector3::from_fn(|k, _| point[k].clamp(ranges[k].0, ranges[k].1))
+fn bounded(point: DVector<f64>, ranges: &[(f64, f64)]) -> DVector<f64> {
+    DVector::from_fn(point.len(), |k, _| point[k].clamp(ranges[k].0, ranges[k].1))
 }
 
 /// The evidence about a point.
 struct Curved {
     value: f64,
-    gradient: Vector3<f64>,
+    gradient: DVector<f64>,
     /// −∂²g.
-    hessian: Matrix3<f64>,
+    hessian: DMatrix<f64>,
 }
 
 impl Curved {
     /// H without the directions in which it bends upwards.
-    fn bowl(&self) -> Matrix3<f64> {
-        let eigen = SymmetricEigen::new(self.hessian);
+    fn bowl(&self) -> DMatrix<f64> {
+        let eigen = SymmetricEigen::new(self.hessian.clone());
         let values = eigen.eigenvalues.map(|value| value.max(0.0));
-        eigen.eigenvectors * Matrix3::from_diagonal(&values) * eigen.eigenvectors.transpose()
+        &eigen.eigenvectors * DMatrix::from_diagonal(&values) * eigen.eigenvectors.transpose()
     }
 }
 
 /// By central differences, about a point that is moved inwards where it is at an end of its range.
 fn curvature(
-    at: Vector3<f64>,
-    steps: &Vector3<f64>,
-    ranges: &Ranges,
-    evidence: &dyn Fn(&[Vector3<f64>]) -> Vec<f64>,
+    at: &DVector<f64>,
+    steps: &DVector<f64>,
+    ranges: &[(f64, f64)],
+    evidence: &dyn Fn(&[DVector<f64>]) -> Vec<f64>,
 ) -> Curved {
-    let middle = Vector3::from_fn(|k, _| at[k].clamp(ranges[k].0 + steps[k], ranges[k].1 - steps[k]));
-    let along = |k: usize, times: f64| Vector3::ith(k, times * steps[k]);
-    let mut points = vec![at, middle];
-    for k in 0..3 {
-        points.extend([middle + along(k, 1.0), middle + along(k, -1.0)]);
+    let count = at.len();
+    let inwards = |k: usize| at[k].clamp(ranges[k].0 + steps[k], ranges[k].1 - steps[k]);
+    let middle = DVector::from_fn(count, |k, _| inwards(k));
+    let moved = |along: &[(usize, f64)]| {
+        let mut point = middle.clone();
+        along.iter().for_each(|&(k, times)| point[k] += times * steps[k]);
+        point
+    };
+    let pairs: Vec<(usize, usize)> = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))).collect();
+    let mut points = vec![at.clone(), middle.clone()];
+    for k in 0..count {
+        points.extend([moved(&[(k, 1.0)]), moved(&[(k, -1.0)])]);
     }
-    const PAIRS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
-    points.extend(PAIRS.iter().map(|&(a, b)| middle + along(a, 1.0) + along(b, 1.0)));
-    points.extend(PAIRS.iter().map(|&(a, b)| middle + along(a, -1.0) + along(b, -1.0)));
+    let first = points.len();
+    points.extend(pairs.iter().map(|&(a, b)| moved(&[(a, 1.0), (b, 1.0)])));
+    points.extend(pairs.iter().map(|&(a, b)| moved(&[(a, -1.0), (b, -1.0)])));
     let g = evidence(&points);
     let (up, down) = (|k: usize| g[2 + 2 * k], |k: usize| g[3 + 2 * k]);
-    let mut hessian = Matrix3::zeros();
-    for k in 0..3 {
+    let mut hessian = DMatrix::zeros(count, count);
+    for k in 0..count {
         hessian[(k, k)] = -(up(k) - 2.0 * g[1] + down(k)) / steps[k].powi(2);
     }
-    for (number, (a, b)) in PAIRS.into_iter().enumerate() {
-        let corners = g[8 + number] + g[11 + number];
+    for (number, &(a, b)) in pairs.iter().enumerate() {
+        let corners = g[first + number] + g[first + pairs.len() + number];
         let mixed = 0.5 * (corners - up(a) - up(b) - down(a) - down(b) + 2.0 * g[1]);
         hessian[(a, b)] = -mixed / (steps[a] * steps[b]);
         hessian[(b, a)] = hessian[(a, b)];
     }
-    let slope = Vector3::from_fn(|k, _| (up(k) - down(k)) / (2.0 * steps[k]));
+    let slope = DVector::from_fn(count, |k, _| (up(k) - down(k)) / (2.0 * steps[k]));
     // what is no number bends nowhere
-    let hessian = if hessian.iter().all(|value| value.is_finite()) { hessian } else { Matrix3::zeros() };
+    let is_known = hessian.iter().all(|value| value.is_finite());
+    let hessian = if is_known { hessian } else { DMatrix::zeros(count, count) };
     let slope = slope.map(|value| if value.is_finite() { value } else { 0.0 });
-    Curved { value: g[0], gradient: slope - hessian * (at - middle), hessian }
+    Curved { value: g[0], gradient: slope - &hessian * (at - &middle), hessian }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const RANGES: Ranges = [(-4.0, 0.0), (0.0, 2.0), (0.5, 1.0)];
+    use nalgebra::{Matrix3, Vector3};
+
+    const RANGES: [(f64, f64); 3] = [(-4.0, 0.0), (0.0, 2.0), (0.5, 1.0)];
+
+    fn dynamic(numbers: [f64; 3]) -> DVector<f64> {
+        DVector::from_row_slice(&numbers)
+    }
+
+    fn fixed(numbers: &DVector<f64>) -> Vector3<f64> {
+        Vector3::new(numbers[0], numbers[1], numbers[2])
+    }
 
     /// A normal density that leans is found, with its covariance and its volume.
     #[test]
@@ -240,43 +315,62 @@ mod tests {
         let mean = Vector3::new(-1.3, 0.9, 0.72);
         let root = Matrix3::new(0.05, 0.0, 0.0, -0.06, 0.03, 0.0, 0.01, 0.0, 0.02);
         let inverse = (root * root.transpose()).try_inverse().unwrap();
-        let one = |x: &Vector3<f64>| -0.5 * (x - mean).dot(&(inverse * (x - mean)));
-        let evidence = |xs: &[Vector3<f64>]| xs.iter().map(one).collect::<Vec<f64>>();
-        let peak = Peak::from(Vector3::new(-2.0, 0.4, 0.9), RANGES, &evidence);
-        assert!((peak.at - mean).amax() < 0.005, "{}", peak.at);
+        let one = |x: &DVector<f64>| -0.5 * (fixed(x) - mean).dot(&(inverse * (fixed(x) - mean)));
+        let evidence = |xs: &[DVector<f64>]| xs.iter().map(one).collect::<Vec<f64>>();
+        let peak = Peak::from(dynamic([-2.0, 0.4, 0.9]), &RANGES, &evidence);
+        assert!((fixed(&peak.at) - mean).amax() < 0.005, "{}", peak.at);
         let expected = root * root.transpose();
         for k in 0..3 {
             let (_, sd) = peak.moments(k);
             assert!((sd / expected[(k, k)].sqrt() - 1.0).abs() < 0.15, "{k}: {sd}");
-            let (low, high) = peak.interval(k);
+            let (low, high) = peak.interval(&|point| point[k], None);
             assert!(((high - low) / (3.92 * sd) - 1.0).abs() < 0.2, "{k}: {low} {high}");
         }
         let volume = (TAU.powf(1.5) * expected.determinant().sqrt() / 4.0).ln();
         assert!((peak.log_evidence - volume).abs() < 0.1, "{} {volume}", peak.log_evidence);
         let even = peak.even(24);
-        let mean_of = even.iter().sum::<Vector3<f64>>() / 24.0;
+        let mean_of = even.iter().map(fixed).sum::<Vector3<f64>>() / 24.0;
         assert!(even.len() == 24 && (mean_of - mean).amax() < 0.03, "{mean_of}");
     }
 
     /// Of numbers that nothing is known of the evidence is what it is anywhere.
     #[test]
     fn what_changes_nothing_costs_nothing() {
-        let evidence = |xs: &[Vector3<f64>]| vec![3.0; xs.len()];
-        let peak = Peak::from(Vector3::new(-1.0, 1.0, 0.6), RANGES, &evidence);
+        let evidence = |xs: &[DVector<f64>]| vec![3.0; xs.len()];
+        let peak = Peak::from(dynamic([-1.0, 1.0, 0.6]), &RANGES, &evidence);
         assert!((peak.log_evidence - 3.0).abs() < 0.3, "{}", peak.log_evidence);
-        let (low, high) = peak.interval(2);
+        let (low, high) = peak.interval(&|point| point[2], None);
         assert!(low < 0.55 && high > 0.9, "{low} {high}");
+    }
+
+    /// An edge is no normal density: what is as likely as anything up to it, and nothing beyond.
+    #[test]
+    fn what_has_edges_is_measured_as_it_is() {
+        let is_in = |x: &DVector<f64>| (x[0] + 2.0).abs() < 0.3 && (x[1] - 1.0).abs() < 0.2;
+        let one = |x: &DVector<f64>| if is_in(x) { 0.0 } else { -1e3 } - 0.5 * ((x[2] - 0.7) / 0.02).powi(2);
+        let evidence = |xs: &[DVector<f64>]| xs.iter().map(one).collect::<Vec<f64>>();
+        let peak = Peak::from(dynamic([-2.1, 1.05, 0.72]), &RANGES, &evidence);
+        for (k, half) in [(0, 0.3), (1, 0.2)] {
+            let (_, sd) = peak.moments(k);
+            assert!((sd * 3.0f64.sqrt() / half - 1.0).abs() < 0.12, "{k}: {sd}");
+        }
+        // 0.6 × 0.4 × √(2π)·0.02 of 4 × 2 × 0.5
+        let volume = (0.24 * TAU.sqrt() * 0.02 / 4.0).ln();
+        assert!((peak.log_evidence - volume).abs() < 0.25, "{} {volume}", peak.log_evidence);
     }
 
     /// A peak at the end of a range goes inwards alone.
     #[test]
     fn what_is_at_an_end_goes_inwards() {
         let one =
-            |x: &Vector3<f64>| -0.5 * ((x[2] - 1.05) / 0.1).powi(2) - 0.5 * ((x[0] + 2.0) / 0.1).powi(2);
-        let evidence = |xs: &[Vector3<f64>]| xs.iter().map(one).collect::<Vec<f64>>();
-        let peak = Peak::from(Vector3::new(-2.0, 1.0, 0.7), RANGES, &evidence);
+            |x: &DVector<f64>| -0.5 * ((x[2] - 1.05) / 0.1).powi(2) - 0.5 * ((x[0] + 2.0) / 0.1).powi(2);
+        let evidence = |xs: &[DVector<f64>]| xs.iter().map(one).collect::<Vec<f64>>();
+        let peak = Peak::from(dynamic([-2.0, 1.0, 0.7]), &RANGES, &evidence);
         let (mean, sd) = peak.moments(2);
         assert!(peak.at[2] == 1.0, "{}", peak.at);
+        // what is at the end is within
+        let (low, high) = peak.interval(&|point| point[2], Some(RANGES[2]));
+        assert!(high == 1.0 && (0.75..0.9).contains(&low), "{low} {high}");
         // of a normal density beyond half a standard deviation: 1.05 − 0.1·φ(½)/Φ(−½)
         assert!((mean - 0.936).abs() < 0.015 && sd < 0.08, "{mean} {sd}");
     }

@@ -1,7 +1,7 @@
 //! What data say of a number that is not linear: its evidence on a grid that grows where the
 //! posterior is.
 
-use super::form::OpenEnd;
+use super::constant::OpenEnd;
 
 /// Most times that the grid is made finer, and most points of it.
 const ROUNDS: usize = 8;

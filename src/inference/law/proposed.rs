@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::form::{Constant, Form, FormConstant};
+use super::constant::Constant;
+use super::form::{Form, FormConstant};
 use super::memory::Memory;
 use super::site::{Measure, Site};
 use crate::inference::{Location, Term};

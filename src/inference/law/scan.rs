@@ -1,11 +1,9 @@
 //! All laws at all sites, each by its evidence, and the smooth curves that they compete with.
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
-use super::bouc_wen::LoopShape;
 use super::choice::Choice;
-use super::form::Form;
 use super::peak::Peak;
 use super::posterior::Posterior;
 use super::remainder::Remainder;
@@ -18,7 +16,8 @@ use crate::parallel::in_parallel;
 const CURVE: usize = 6;
 /// Laws whose evidence at the best point is so far (ln) behind the best need no closer look.
 const BEHIND: f64 = 12.0;
-/// Part of the evidence of a law that a first look may miss: the peak of its number is narrow.
+/// Part of the evidence of a law that a first look may miss for each of its numbers that is not
+/// linear: its peak is narrow.
 const MISSED: f64 = 0.25;
 /// Values of the number that is not linear, at most, that are tried with the variable as it is with
 /// each; how far (ln) behind the likeliest they may be at least; how near two of them are the same.
@@ -58,9 +57,10 @@ impl Scanned {
     }
 }
 
-/// A loop with its numbers: coordinate of where it yields, ln n, σ.
-fn at_point(choice: Choice, point: &Vector3<f64>) -> (Choice, f64) {
-    (choice.shaped(LoopShape { sharpness: point[1].exp(), balance: point[2] }), point[0])
+/// A loop with its numbers: the coordinate of its width, and its shape.
+pub(super) fn at_point(choice: Choice, point: &DVector<f64>) -> (Choice, f64) {
+    let numbers = point.as_slice();
+    (choice.remembering(choice.memory.shaped(&numbers[1..])), numbers[0])
 }
 
 /// Everything that was tried, the likeliest first.
@@ -80,7 +80,7 @@ pub(super) fn prior(sites: usize, fellows: usize) -> f64 {
 /// Where a law is likeliest. Of waves that explain the same the slowest has the widest peak in
 /// ln f, and so the most of the posterior.
 fn middle(choice: Choice, posterior: &Posterior) -> f64 {
-    let width = |u: f64| if choice.form == Form::Harmonic { -u } else { 0.0 };
+    let width = |u: f64| if choice.form.is_wave() { -u } else { 0.0 };
     let peaks = posterior.peaks(APART).into_iter();
     let highest = peaks.max_by(|a, b| (a.1 + width(a.0)).total_cmp(&(b.1 + width(b.0))));
     highest.unwrap_or_else(|| posterior.best()).0
@@ -168,7 +168,8 @@ pub(super) fn scan_some(
         let of_choice = |&choice: &Choice| {
             let grid = choice.grid(&sites[number]);
             let own = |choice: Choice| (choice, Posterior::new(&grid, &|us| evidence(choice, us)));
-            let shaped = choice.shapes().into_iter().map(|shape| own(choice.shaped(shape)));
+            let shapes = choice.memory.first_shapes().into_iter();
+            let shaped = shapes.map(|memory| own(choice.remembering(memory)));
             let likeliest = shaped.reduce(|a, b| if b.1.best().1 > a.1.best().1 { b } else { a });
             likeliest.unwrap_or_else(|| own(choice))
         };
@@ -181,7 +182,7 @@ pub(super) fn scan_some(
     let mut first = Vec::new();
     for (number, (laws, curve)) in by_site.into_iter().enumerate() {
         let even = prior(places, all[number].len());
-        let prior = |choice: &Choice| even + sites[number].share(choice.form).ln();
+        let prior = |choice: &Choice| even + (sites[number].share(choice.form) * choice.memory.share()).ln();
         first.extend(laws.into_iter().map(|(choice, posterior)| (choice, posterior, prior(&choice))));
         if let Some(curve) = curve.filter(|curve| best_curve.is_none_or(|(_, best)| *curve > best)) {
             best_curve = Some((number, curve));
@@ -190,8 +191,8 @@ pub(super) fn scan_some(
     // at most so much its odds may be
     let peak = |(choice, posterior, prior): &(Choice, Posterior, f64)| {
         let most = posterior.best().1;
-        let missed = if choice.constant().is_some() { MISSED * most.max(0.0) } else { 0.0 };
-        most + missed + prior
+        let numbers = usize::from(choice.constant().is_some()) + choice.memory.shape().len();
+        most + MISSED * numbers as f64 * most.max(0.0) + prior
     };
     let sure = |law: &(Choice, Posterior, f64)| law.1.best().1 + law.2;
     let highest = first.iter().map(sure).fold(f64::NEG_INFINITY, f64::max);
@@ -199,12 +200,11 @@ pub(super) fn scan_some(
     let closer: Vec<bool> = first.iter().map(|law| peak(law) > (highest - BEHIND).max(0.0)).collect();
     let mut laws = in_parallel(first.len(), |k| {
         let (choice, mut posterior, prior) = first[k].clone();
-        if let Some(shape) = choice.memory.shape().filter(|_| closer[k]) {
+        if closer[k] && choice.memory.has_shape() {
             let (low, high) = posterior.ends();
-            let (sharp, balance) = (LoopShape::SHARPNESS, LoopShape::BALANCE);
-            let ranges = [(low, high), (sharp.0.ln(), sharp.1.ln()), balance];
-            let start = Vector3::new(posterior.best().0, shape.sharpness.ln(), shape.balance);
-            let peak = Peak::from(start, ranges, &|points| {
+            let ranges = [vec![(low, high)], choice.memory.shape_ranges()].concat();
+            let start = DVector::from_vec([vec![posterior.best().0], choice.memory.shape()].concat());
+            let peak = Peak::from(start, &ranges, &|points| {
                 remainder.gains(points.len(), |k| {
                     let (choice, u) = at_point(choice, &points[k]);
                     choice.columns(&sites[choice.site], u, size).columns

@@ -102,6 +102,11 @@ impl Site {
         if self.rare.contains(&form) { RARE } else { 1.0 }
     }
 
+    /// True where the law is of what gives way.
+    pub fn gives_way(&self) -> bool {
+        self.forms == Form::GIVING_WAY
+    }
+
     /// Data that the law concerns.
     pub fn concerned(&self) -> impl Iterator<Item = usize> + '_ {
         let acts = |i: usize| self.directions.iter().any(|(_, weights)| weights[i] != 0.0);

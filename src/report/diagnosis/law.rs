@@ -194,9 +194,11 @@ fn others(law: &Law, noun: &str) -> String {
     let is_here = |site: &Site| site.location == law.site.location && site.variable == law.site.variable;
     let mut names: Vec<String> = Vec::new();
     for rival in &law.rivals {
-        let name = match is_here(&rival.site) {
-            true => format!("of another form ({})", rival.form.name()),
-            false => at(&rival.site),
+        let name = match rival.memory {
+            _ if !is_here(&rival.site) => at(&rival.site),
+            memory if memory.is(law.memory) => format!("of another form ({})", rival.form.name()),
+            Memory::None => format!("without memory ({})", rival.form.name()),
+            memory => format!("with another memory ({})", memory.name()),
         };
         if !names.contains(&name) {
             names.push(name);

@@ -60,7 +60,7 @@ impl Check<'_> {
         if let Some(memory) = &raw.memory {
             let known = |own: &LawMemory| own.key() == memory.get_ref();
             let Some(of_key) = LawMemory::ALL.into_iter().find(known) else {
-                return Err(toml.is("law.memory", memory, "\"stop\", \"bouc_wen\" or \"lag\""));
+                return Err(toml.is("law.memory", memory, &LawMemory::keys()));
             };
             for needed in of_key.constants() {
                 let own = law.constants.iter().find(|own| own.name == needed.name);
@@ -68,6 +68,11 @@ impl Check<'_> {
                     let expected = format!("with it a constant {}", needed.description());
                     return Err(toml.is("law.memory", memory, &expected));
                 }
+            }
+            let value =
+                |name: &str| law.constants.iter().find(|own| own.name == name).map_or(0.0, |own| own.value);
+            if let Some(expected) = of_key.amiss(value) {
+                return Err(toml.is("law.memory", memory, &format!("with it constants {expected}")));
             }
             law.memory = Some(of_key);
         }

@@ -24,7 +24,12 @@ pub fn written(law: &Law, robot: &Robot, from: &str) -> Option<RobotLaw> {
     let is_known = match law.memory {
         Memory::None => true,
         Memory::Side => !matches!(own, JointLawVariable::Torque(_)),
-        Memory::Stop | Memory::BoucWen(_) | Memory::Lag | Memory::Lagged => false,
+        Memory::Stop
+        | Memory::Play
+        | Memory::Stops(_)
+        | Memory::BoucWen(_)
+        | Memory::Lag
+        | Memory::Lagged => false,
     };
     if !is_known {
         return None;

@@ -43,8 +43,18 @@ const OF_A_STOP: &[Form] = &[
 ];
 /// With two signs, of which each may be another case.
 const OF_A_SIDE: &[Form] = Form::FROM_ANYWHERE;
-/// From the first reading on: time, order.
-const OF_TIME: &[Form] = Form::SINCE_A_START;
+/// From the first reading on: time, order. What swings had begun before.
+const OF_TIME: &[Form] = &[
+    Form::Threshold,
+    Form::Step,
+    Form::Approach,
+    Form::Decay,
+    Form::Logarithm,
+    Form::Oscillation,
+    Form::Polynomial(1),
+    Form::Polynomial(2),
+    Form::Polynomial(3),
+];
 /// From anywhere on: temperature.
 const OF_A_LEVEL: &[Form] = OF_A_SIDE;
 /// Of two signs, and of several decades.

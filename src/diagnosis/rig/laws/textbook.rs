@@ -39,6 +39,13 @@ pub fn remark(law: &Law) -> Option<String> {
         (_, Memory::Stop, _) => {
             "A stop operator is what a spring with a dry slider in series does (Jenkins)."
         }
+        (_, Memory::Play, _) => {
+            "A play operator is what is moved through a clearance and held by friction there."
+        }
+        (_, Memory::Stops(_), _) => {
+            "A few stop operators side by side are what a joint does that slips at a few places \
+             (Prandtl and Ishlinskii)."
+        }
         (Form::Approach | Form::Decay, _, "t") => {
             "An exponential in time is what one relaxation time does (Maxwell)."
         }

@@ -49,7 +49,7 @@ mod tests {
             // amplitudes are of the scaled variable
             let amplitudes = [30.0, -12.0, 5.0][..form.count()].to_vec();
             let s = match form {
-                Form::Harmonic => 2.5,
+                Form::Harmonic | Form::Oscillation => 2.5,
                 Form::Pull | Form::PullAbove => 1.4,
                 Form::PullBelow => -0.9,
                 _ => 0.4,
@@ -63,6 +63,7 @@ mod tests {
             let symbols: &[&str] = match form {
                 Form::Threshold | Form::Pull | Form::PullBelow | Form::PullAbove => &["k"],
                 Form::Harmonic | Form::Settling => &["a", "b"],
+                Form::Oscillation => &["a", "b", "c"],
                 Form::PowerAfterGap => &["a", "g"],
                 Form::Polynomial(_) => &["c1", "c2", "c3"],
                 _ => &["a"],

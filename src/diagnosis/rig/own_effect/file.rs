@@ -173,7 +173,7 @@ fn of_raw(toml: TomlText, text: &str, raw: &RawEffect) -> Result<OwnEffect> {
 
 fn memory(toml: TomlText, raw: &Spanned<String>, parameters: &[Parameter]) -> Result<LawMemory> {
     let Some(memory) = LawMemory::ALL.into_iter().find(|memory| memory.key() == raw.get_ref()) else {
-        return Err(toml.is("memory", raw, "\"stop\", \"bouc_wen\" or \"lag\""));
+        return Err(toml.is("memory", raw, &LawMemory::keys()));
     };
     for needed in memory.constants() {
         let own = parameters.iter().find(|own| own.name == needed.name);

@@ -14,6 +14,8 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
     let (result, variable) = (site.result.symbol, site.variable.symbol);
     let argument = match memory {
         Memory::Stop => format!("({variable} − P_r[{variable}])"),
+        Memory::Play => format!("P_r[{variable}]"),
+        Memory::Stops(_) => format!("S[{variable}]"),
         Memory::BoucWen(_) => "z".to_owned(),
         Memory::Lag => format!("({variable} − {variable}_lag)"),
         Memory::Lagged => format!("({variable}_lag − {variable}_start)"),
@@ -44,6 +46,7 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         Form::Settling => format!("a·exp(−{size}/{corner}) + b"),
         Form::Logarithm => format!("a·{sign}ln(1 + {size}/{corner})"),
         Form::Harmonic => format!("a·(cos(2π·{x}/P) − 1) + b·sin(2π·{x}/P)"),
+        Form::Oscillation => format!("a·cos(2π·{x}/P) + b·sin(2π·{x}/P) + c"),
         Form::Polynomial(1) => format!("c1·{x}"),
         Form::Polynomial(2) => format!("c1·{x} + c2·{x}²"),
         _ => format!("c1·{x} + c2·{x}² + c3·{x}³"),
@@ -57,6 +60,8 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
     };
     let x = match memory {
         Memory::Stop => format!(r"\left({0} - \mathcal{{P}}_r[{0}]\right)", latex_of(variable)),
+        Memory::Play => format!(r"\mathcal{{P}}_r[{}]", latex_of(variable)),
+        Memory::Stops(_) => format!(r"\mathcal{{S}}[{}]", latex_of(variable)),
         Memory::BoucWen(_) => "z".to_owned(),
         Memory::Lag => format!(r"\left({0} - \tilde{{{0}}}_{{\tau}}\right)", latex_of(variable)),
         Memory::Lagged => {
@@ -95,6 +100,9 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         Form::Settling if is_signed => format!(r"{sign}\left(a\,e^{{-{size}/{corner}}} + b\right)"),
         Form::Settling => format!(r"a\,e^{{-{size}/{corner}}} + b"),
         Form::Logarithm => format!(r"a{sign}\,\ln\left(1 + \frac{{{size}}}{{{corner}}}\right)"),
+        Form::Oscillation => {
+            format!(r"a\cos\frac{{2\pi {x}}}{{P}} + b\sin\frac{{2\pi {x}}}{{P}} + c")
+        }
         Form::Harmonic => {
             format!(r"a\left(\cos\frac{{2\pi {x}}}{{P}} - 1\right) + b\sin\frac{{2\pi {x}}}{{P}}")
         }
@@ -114,7 +122,8 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
                 latex_of(variable)
             ),
         ),
-        Memory::None | Memory::Side | Memory::Stop | Memory::Lag | Memory::Lagged => {
+        Memory::Stops(stops) => side_by_side(stops.count(), variable, &latex_of(variable)),
+        Memory::None | Memory::Side | Memory::Stop | Memory::Play | Memory::Lag | Memory::Lagged => {
             (String::new(), String::new())
         }
     };
@@ -122,4 +131,17 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         text: format!("{result} = {}{where_text}", bracketed(side.0, text)),
         latex: format!("{} = {}{where_latex}", latex_of(result), bracketed(side.1, latex)),
     }
+}
+
+/// What S is, as text and as LaTeX: `, S[F] = w1·(F − P_r1[F]) + (1 − w1)·(F − P_r[F])`.
+fn side_by_side(count: usize, variable: &str, x: &str) -> (String, String) {
+    let narrower = || 1..count;
+    let stops = narrower().map(|k| format!("w{k}·({variable} − P_r{k}[{variable}]) + ")).collect::<String>();
+    let rest = narrower().map(|k| format!(" − w{k}")).collect::<String>();
+    let text = format!(", S[{variable}] = {stops}(1{rest})·({variable} − P_r[{variable}])");
+    let stop = |r: &str| format!(r"\left({x} - \mathcal{{P}}_{{{r}}}[{x}]\right)");
+    let stops = narrower().map(|k| format!("w_{k} {} + ", stop(&format!("r_{k}")))).collect::<String>();
+    let rest = narrower().map(|k| format!(" - w_{k}")).collect::<String>();
+    let latex = format!(r",\quad \mathcal{{S}}[{x}] = {stops}\left(1{rest}\right) {}", stop("r"));
+    (text, latex)
 }

@@ -41,6 +41,8 @@ pub enum Limitation {
     CorrelatedPoses(f64, f64),
     /// The first pose, by its name, is so far off (m) as the way on which joints come moves others.
     UnknownArrival(String, f64),
+    /// Poses, by their names, that may have been misread or be tails of the scatter of all.
+    FarOut(Vec<String>),
     /// A joint, from 0, with play, and poses, by their names, whose load is too small to say to
     /// which side it pulls.
     UnknownSide(usize, Vec<String>),
@@ -136,6 +138,12 @@ impl fmt::Display for Limitation {
                 "{} is {} µm off. What was found may be the cause: where the arm came from before it was not recorded.",
                 pose.replacen("pose", "Pose", 1),
                 significant(off / UM, 3)
+            ),
+            Limitation::FarOut(poses) => write!(
+                f,
+                "Far out: {}. These poses cannot distinguish a misread one from a scatter that now and then throws one so far, \
+                 so it counts less and is no finding. Measure it again.",
+                poses.join(", ")
             ),
             Limitation::UnknownSide(joint, poses) => write!(
                 f,

@@ -4,6 +4,7 @@ pub mod arrival;
 pub mod beside;
 pub mod forward_model;
 pub mod hung;
+pub mod leverage;
 pub mod limits;
 pub mod memory;
 pub mod one_law;
@@ -14,10 +15,11 @@ pub mod tails;
 use self::arrival::unknown_arrival;
 use self::beside::{calibrated_beside, unequal};
 use self::hung::{BesideMasses, beside_hidden_masses, may_bend, may_hide, with_rivals};
-use self::limits::{limits, noisy};
+use self::limits::{far_out, limits, noisy};
 use self::memory::check_memory;
 use self::prepared::{FirstLook, Prepared};
 use self::sides::{either, on_the_other_side, unknown_sides};
+use self::tails::{Tailed, tailed};
 use super::effects::contact::is_of_clamps;
 use super::effects::gear::gear_joint;
 use super::effects::{EVERY_ROW, registry};
@@ -97,7 +99,7 @@ pub fn diagnose_calibrated<'c>(
         let is_equal = noise.is_none() == look.scatter.is_none();
         // groups of unequal scatter look like heavy tails as long as they count alike
         let is_asked = look.weights.is_none() && is_equal;
-        let tails = if is_asked { tails::weights(&prepared, &hypothesis, &left) } else { None };
+        let tails = if is_asked { tailed(&prepared, &hypothesis, &left)? } else { None };
         let moved_after = moved_after(&prepared, &hypothesis);
         let is_in_place = moved_after.iter().all(|row| look.moved_after.contains(row));
         // clamps get a second look: what is left says how well displacements are known
@@ -109,7 +111,11 @@ pub fn diagnose_calibrated<'c>(
         }
         let turned = either(&look.turned, &other_side);
         let left = Some(prepared.model.by_row(&left));
-        look = FirstLook { scatter: noise, weights: look.weights.or(tails), left, moved_after, turned };
+        let (weights, far_out) = match tails {
+            Some(Tailed { weights, open }) => (Some(weights), open),
+            None => (look.weights, look.far_out),
+        };
+        look = FirstLook { scatter: noise, weights, far_out, left, moved_after, turned };
         let about = about.unwrap_or(prepared.about);
         let calibration = prepared.model.calibration;
         prepared = Prepared::about(campaign, calibration, about, &look)?;
@@ -155,6 +161,7 @@ pub fn diagnose_calibrated<'c>(
     limits.extend(arrival);
     limits.extend(names);
     limits.extend(unknown_sides(&context, &diagnosis));
+    limits.extend(far_out(&context, &diagnosis, &look.far_out));
     let of_neighbours = evidence.correlated_noise;
     limits.extend(of_neighbours.map(|noise| Limitation::CorrelatedPoses(noise.share, noise.length)));
     let mut found = Diagnosed { model, evidence, diagnosis, not_testable, absorbed, limits, law };

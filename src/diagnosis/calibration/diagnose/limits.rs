@@ -5,7 +5,7 @@ use super::super::model::Context;
 use crate::calibration::campaign::{Campaign, Group};
 use crate::calibration::{Calibration, Noise};
 use crate::diagnosis::Limitation;
-use crate::inference::Evidence;
+use crate::inference::{Diagnosis, Evidence, Location};
 use crate::statistics::median;
 
 /// Rows per parameter below which they are few.
@@ -49,6 +49,17 @@ pub fn limits(context: &Context, calibration: &Calibration, evidence: &Evidence)
         limits.push(Limitation::NoFoldsOfPoses);
     }
     limits
+}
+
+/// Poses that may have been misread, where no finding is about them.
+pub fn far_out(context: &Context, diagnosis: &Diagnosis, rows: &[usize]) -> Option<Limitation> {
+    let parts = || diagnosis.findings.iter().flat_map(|finding| &finding.parts);
+    let is_named = |row: &usize| {
+        parts().any(|part| matches!(part.location, Location::Pose { row: own, .. } if own == *row))
+    };
+    let poses: Vec<String> =
+        rows.iter().filter(|row| !is_named(row)).map(|row| context.pose_name(*row)).collect();
+    (!poses.is_empty()).then_some(Limitation::FarOut(poses))
 }
 
 /// Clamps that scatter so many times as much as the others do in the middle.

@@ -33,6 +33,8 @@ pub struct FirstLook {
     pub scatter: Option<Noise>,
     /// What each row counts, where tails are heavy.
     pub weights: Option<Vec<f64>>,
+    /// Rows, from 0, that may as well have been misread as be such a tail.
+    pub far_out: Vec<usize>,
     /// What is left of each row, in {W}, m; `None` where that is what the calibration leaves.
     pub left: Option<Vec<Vector3<f64>>>,
     /// Rows, from 0, after which something has moved.

@@ -16,7 +16,7 @@ use super::search::ODDS;
 use crate::diagnosis::rig::recording::columns::{rows_of, trial_name};
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::diagnosis::rig::recording::resolution::resolution;
-use crate::diagnosis::rig::recording::spread::scatter_of;
+use crate::diagnosis::rig::recording::spread::about_scatter_of;
 use crate::inference::Key;
 use crate::spatial::Axis;
 use crate::statistics::median;
@@ -99,7 +99,7 @@ fn own_scatters(data: &[Datum], own: &[usize]) -> Vec<f64> {
     let of_channel = |channel: Axis| {
         let of_sensor: Vec<&Datum> =
             own.iter().map(|&i| &data[i]).filter(|datum| datum.channel == channel).collect();
-        scatter_of(&of_sensor)
+        about_scatter_of(&of_sensor)
     };
     Axis::ALL.into_iter().filter_map(of_channel).collect()
 }

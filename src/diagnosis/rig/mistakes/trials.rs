@@ -24,6 +24,7 @@ use super::relabelling::Relabelling;
 use super::search::{ALIKE as NO_WORSE, ODDS, RARE};
 use crate::diagnosis::rig::recording::columns::{rows_of, trial_name};
 use crate::diagnosis::rig::recording::datum::Datum;
+use crate::diagnosis::rig::recording::resolution::resolution;
 use crate::statistics::median;
 
 /// Slopes that differ by less than this share, or by so many standard errors, may be one.
@@ -135,14 +136,21 @@ impl<'a> Table<'a> {
             (datum.session_number, datum.trial_number, if is_named { 0 } else { *visit })
         }));
         let trials = trial.iter().max().map_or(0, |last| last + 1);
+        // readings that round to the same number scatter all the same
+        let rounding = |own: usize| {
+            let own = data.iter().zip(&trial).filter(|(_, trial)| **trial == own);
+            resolution(own.map(|(datum, _)| datum)) / 12f64.sqrt()
+        };
+        let rounding: Vec<f64> = (0..trials).map(rounding).collect();
         let mut cells = vec![vec![None; lines.len()]; trials];
         for (k, line) in lines.iter().enumerate() {
             let mut of_trial: Vec<Vec<usize>> = vec![Vec::new(); trials];
             line.data.iter().for_each(|&i| of_trial[trial[i]].push(i));
-            for (cells, own) in cells.iter_mut().zip(of_trial) {
+            for ((cells, own), rounding) in cells.iter_mut().zip(of_trial).zip(&rounding) {
                 let load = own.iter().fold(0.0, |most: f64, &i| most.max(data[i].load));
                 let group = group(data, own);
-                cells[k] = group.has_slope.then_some(Cell { fit: group.fit, load });
+                let fit = Fit { scatter: group.fit.scatter.max(*rounding), ..group.fit };
+                cells[k] = group.has_slope.then_some(Cell { fit, load });
             }
         }
         let mut table = Table { data, lines, trial, cells, by_rod, classes: Vec::new() };

@@ -174,6 +174,11 @@ pub fn scatter_of(own: &[&Datum]) -> Option<f64> {
     scatter(own).map(|scatter| scatter.sigma)
 }
 
+/// The same within a factor of two or so, of fewer readings.
+pub fn about_scatter_of(own: &[&Datum]) -> Option<f64> {
+    lists(own).iter().map(|scatter| scatter.sigma).min_by(f64::total_cmp)
+}
+
 /// Of the readings of one sensor; `None` of too few.
 fn scatter(own: &[&Datum]) -> Option<Scatter> {
     let lists = lists(own);

@@ -1,6 +1,7 @@
 //! Mistakes in a part of a recording, which the rest shows.
 
 use super::*;
+use crate::rig::readings::LoadColumn;
 
 /// The rows of a trial.
 fn of_trial<'a>(readings: &'a mut Readings, trial: &'a str) -> impl Iterator<Item = &'a mut Reading> {
@@ -119,6 +120,25 @@ fn columns_of_one_trial_are_exchanged_where_another_one_has_a_station_of_its_own
         cases.expect(&format!("{what} swapped"), &readings, file, &expected);
     });
     cases.check();
+}
+
+/// A sensor that shows the same number under all loads of a trial, to the micrometre, scatters all
+/// the same: by a thousandth of that it would in millimetres, which grams are as well.
+#[test]
+fn grams_in_two_trials_are_no_millimetres_of_a_coarse_display() {
+    let file = rod(ROD_5);
+    let mut readings = recorded(&file, Bench::Full, 3);
+    readings.load_column = LoadColumn::Kilograms;
+    for offset in readings.rows.iter_mut().flat_map(|row| row.offset.iter_mut().flatten()) {
+        *offset = (*offset / UM).round() * UM;
+    }
+    for row in of_trial(&mut readings, "2") {
+        row.load *= 1e3;
+        for k in (0..3).filter(|k| *k != row.direction.axis.index()) {
+            row.offset[k] = row.offset[k].map(|_| UM);
+        }
+    }
+    assert_eq!(found(&readings, Some(&file)), ["unit_mistake load_kg, trial 2"]);
 }
 
 /// Two trials of three in kilograms: the rod file knows that it is these.
@@ -296,10 +316,10 @@ fn a_trial_that_repeats_another_one_is_a_copy() {
 fn a_copy_beside_a_trial_at_another_station_is_a_copy() {
     let mut cases = Cases::default();
     let file = rod(ROD_5);
-    for seed in 0..2 {
+    for (seed, loads) in [(0, 15), (1, 15), (2, 8), (3, 8)] {
         let mut rows = Vec::new();
         for (trial, axis) in (1..=3).flat_map(|trial| [Axis::Y, Axis::Z].map(|axis| (trial, axis))) {
-            for k in 1..=15 {
+            for k in 1..=loads {
                 let mut row = Reading::new(Direction::along(axis), f64::from(k));
                 row.trial = Some(trial.to_string());
                 row.read_station = (trial == 2).then(|| 0.6 * file.length());
@@ -309,7 +329,8 @@ fn a_copy_beside_a_trial_at_another_station_is_a_copy() {
         }
         let clean = read(&file, rows, seed);
         let mut copied = clean.clone();
-        (0..30).for_each(|k| copied.rows[60 + k].offset = clean.rows[k].offset);
+        let count = clean.rows.len() / 3;
+        (0..count).for_each(|k| copied.rows[2 * count + k].offset = clean.rows[k].offset);
         cases.expect(&format!("{seed}"), &clean, &file, &[]);
         cases.expect(&format!("{seed} copied"), &copied, &file, &["copy_mistake trial 3"]);
     }

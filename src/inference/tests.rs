@@ -342,27 +342,6 @@ fn an_effect_that_fits_no_better_than_a_number_in_its_place_is_none() {
     }
 }
 
-/// A curve that draws nothing but what such a number does shows in no datum: it is no error that
-/// nobody explains.
-#[test]
-fn a_curve_that_only_takes_the_place_of_a_number_is_none() {
-    let mut model = Columns::new(COUNT);
-    model.add("unknown", "a line", column(|x| 210.0 * x), true);
-    let number =
-        NominalParameter { name: "E".into(), unit: "GPa", si: 1e9, value: 193e9, standard_uncertainty: 2e9 };
-    let found = |seed: u64, times: f64| {
-        let nominal_numbers = vec![number.clone()];
-        let plain = evidence(seed, |x| 50.0 * times * x);
-        let evidence = Evidence { nominal: column(|x| 50.0 * x), nominal_numbers, ..plain };
-        diagnose(&model, &evidence).discrepancy.is_some()
-    };
-    for seed in 0..20 {
-        assert!(!found(seed, 4.2), "seed {seed}");
-        // where the number cannot be so far off, it is
-        assert!(found(seed, 12.0), "seed {seed}");
-    }
-}
-
 /// A slope that the base model has, and a column that is nearly the same: what it explains is what
 /// the base model could not.
 #[test]

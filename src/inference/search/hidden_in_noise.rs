@@ -16,6 +16,9 @@ use crate::inference::search::Search;
 use crate::inference::search::selection::{DiscrepancyModel, NAMED, Pairs};
 use crate::inference::{Evidence, Hypothesis};
 
+/// Probability beforehand that one sensor is much worse than the others.
+const UNEVEN: f64 = 0.1;
+
 /// The spread with which fewer effects explain as much, within the odds of a name, as the `longest`
 /// hypothesis does without it, or as many explain more by these odds; `None` where there is none.
 pub fn hidden_in_noise(model: &Linearised<'_>, search: &Search, longest: &Hypothesis) -> Option<Vec<f64>> {
@@ -47,7 +50,7 @@ pub fn hidden_in_noise(model: &Linearised<'_>, search: &Search, longest: &Hypoth
         .map(|spread| with(&evenly_weighted(&Evidence { spread, ..evidence.clone() }, evidence)));
     let gain = log_probability(&found, &best) - own.map_or(alike, |own| own.max(alike));
     let least = if best.terms.len() < longest.terms.len() { -NAMED.ln() } else { NAMED.ln() };
-    (gain * evidence.information > least).then_some(other.spread)
+    (gain * evidence.information + UNEVEN.ln() > least).then_some(other.spread)
 }
 
 /// Without regard to tails; what was far off stays so.

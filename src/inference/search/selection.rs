@@ -1,7 +1,6 @@
 //! Which hypothesis a recording supports: effects are added, exchanged and taken away while that
 //! makes it more probable.
 
-use crate::inference::columns::background::is_implausible;
 use crate::inference::score::priors::PRIOR;
 use crate::inference::search::Search;
 use crate::inference::{Effect, ForwardModel, Hypothesis, Kind, Term};
@@ -14,8 +13,6 @@ pub const APART: f64 = 20.0;
 /// A hypothesis of known effects explains as well as one that leaves something unknown within these
 /// odds, if it leaves at most so much more, as a factor, per degree of freedom.
 const AS_WELL: (f64, f64) = (20.0, 1.01);
-/// What a curve changes shows in the data if it is so many standard deviations of one of them long.
-const SEEN: f64 = 2.0;
 /// Share of what names explain that a curve may draw better.
 pub const LITTLE: f64 = 0.1;
 /// Standard deviations of what more degrees of freedom take by chance that count as chance.
@@ -404,9 +401,7 @@ impl Search<'_> {
     /// chance.
     fn remainder(&self, hypothesis: &Hypothesis, additions: &[f64]) -> Option<(f64, DiscrepancyModel)> {
         let least = hypothesis.log_probability + NAMED.ln();
-        let curve = self
-            .longer(hypothesis, additions, true)
-            .filter(|longer| longer.log_probability > least && self.is_seen(hypothesis, longer));
+        let curve = self.longer(hypothesis, additions, true).filter(|longer| longer.log_probability > least);
         let predicted = self.predicted(hypothesis, self.evidence, &self.model.response(&hypothesis.terms));
         let replicates = self.lack_of_fit(hypothesis, &predicted).map_or(f64::NEG_INFINITY, |test| {
             let odds = self.evidence.information * test.log_odds();
@@ -416,16 +411,6 @@ impl Search<'_> {
             Some(longer) => Some((longer.log_probability.max(replicates), DiscrepancyModel::Curve(longer))),
             None => (replicates > least).then_some((replicates, DiscrepancyModel::Replicates)),
         }
-    }
-
-    /// Does a longer hypothesis predict anything that the data can show? It may also be likelier
-    /// only for what it takes off the numbers of the file, which say themselves where they are too
-    /// far off.
-    fn is_seen(&self, hypothesis: &Hypothesis, longer: &Hypothesis) -> bool {
-        let predicted =
-            |own: &Hypothesis| self.predicted(own, self.evidence, &self.model.response(&own.terms));
-        let change = self.whitening.whitened(&(predicted(longer) - predicted(hypothesis)));
-        change.norm() > SEEN * longer.sigma || is_implausible(self.evidence, hypothesis)
     }
 
     /// The hypothesis with one candidate more, the likeliest of those that are unknown or of those

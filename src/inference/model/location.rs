@@ -191,6 +191,8 @@ pub enum Part {
     Arm,
     /// The base of the robot.
     Base,
+    /// What sees the tip of the robot from a place of its own.
+    Tracker,
     /// All sensors of the rig.
     Sensors,
     /// Where the rig's loads act on the rod.
@@ -378,6 +380,7 @@ impl fmt::Display for Part {
             Part::Tool => "tool",
             Part::Arm => "arm",
             Part::Base => "base",
+            Part::Tracker => "tracker",
             Part::Sensors => "sensors",
             Part::LoadPoint => "load point",
             Part::ReadPoint => "read point",

@@ -4,7 +4,7 @@ use super::law;
 pub use super::lengths::{size, um};
 use super::subject::Subject;
 use crate::diagnosis::Limitation;
-use crate::inference::{Diagnosis, Finding, Kind, Location, WrittenTo};
+use crate::inference::{Diagnosis, Finding, Kind, Location, Part, WrittenTo};
 use crate::units::{capital, significant, uncapital};
 
 /// So many findings are said in full; more are named.
@@ -342,15 +342,35 @@ pub fn sentence(subject: &Subject, finding: &Finding) -> String {
     format!("{description}{said}{more}; these {} cannot distinguish them.", subject.noun)
 }
 
-/// Which other clamp, socket or joint it may be: the first sentence names none as if it were sure.
+/// Which other clamp, socket, joint or part it may be: the first sentence names none as if it were
+/// sure.
 fn or_its_like(finding: &Finding) -> String {
     let places = finding.other_places();
+    if let Location::Form { part, .. } = &finding.location {
+        return or_another_part(*part, &places);
+    }
     let is_named = |place: &Location| matches!(place, Location::Named(_));
     if !is_named(&finding.location) || !places.iter().any(is_named) {
         return String::new();
     }
     let named: Vec<String> = places.iter().filter(|place| is_named(place)).map(ToString::to_string).collect();
     format!(" It may as well be {}.", named.join(", or "))
+}
+
+/// The same of parts, each of which has several forms of a law.
+fn or_another_part(own: Part, places: &[Location]) -> String {
+    let mut others: Vec<Part> = Vec::new();
+    for place in places {
+        match place {
+            Location::Form { part, .. } if *part != own && !others.contains(part) => others.push(*part),
+            _ => {}
+        }
+    }
+    let others: Vec<String> = others.iter().map(|part| format!("the {part}")).collect();
+    match others.is_empty() {
+        true => String::new(),
+        false => format!(" It may as well be {}.", others.join(", or ")),
+    }
 }
 
 /// A finding without numbers.
@@ -392,5 +412,18 @@ mod tests {
         assert_eq!(found(&[]), "");
         assert_eq!(found(&[Location::Station(0.2)]), "");
         assert_eq!(found(&[at("clamp 3"), at("clamp 1")]), " It may as well be clamp 3, or clamp 1.");
+    }
+
+    #[test]
+    fn the_first_sentence_says_which_other_part_it_may_be_and_no_other_form_of_its_own() {
+        let with = |part: Part, form: &str| Location::Form { part, form: form.into() };
+        let places = [
+            with(Part::Base, "with order"),
+            with(Part::Tracker, "with order"),
+            with(Part::Tracker, "with time"),
+        ];
+        let found = |places: &[Location]| or_another_part(Part::Base, places);
+        assert_eq!(found(&places[..1]), "");
+        assert_eq!(found(&places), " It may as well be the tracker.");
     }
 }

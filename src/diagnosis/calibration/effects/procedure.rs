@@ -26,6 +26,8 @@ const PER_HOUR: f64 = 20.0 * UM;
 const WARM_UP: f64 = 50.0 * UM;
 /// Distance from one joint to the next below which there is no link to grow, m.
 const LEAST_LINK: f64 = 20.0 * MM;
+/// How far from the base a tracker stands, m.
+const TRACKER: f64 = 3.0;
 /// Time constants of a robot that warms up, as parts of the recording.
 const WARMING: [f64; 4] = [0.03, 0.1, 0.2, 0.4];
 
@@ -93,12 +95,14 @@ pub static THERMAL_DRIFT: CalibrationEffect = CalibrationEffect {
         kind: Kind::Physics,
         summary: "the arm drifts with temperature, time or order",
         formula: "d·(T − T̄), d·(t − t̄) or d·e^(−t/t₁), of the robot in {W} or of its tool in {T}; the same of \
-                  a joint's zero, Jⱼ·d, or of the length of its link; d·(flange − base) where all links grow",
+                  a joint's zero, Jⱼ·d, or of the length of its link; d·(flange − base) where all links grow; \
+                  d + k·(ball − base) where the scale of a tracker grows, k of it and d = −k·(tracker − base)",
         prior: "10 µm/K (an arm of steel of 1 m grows by 12), but 50 µm at least over the recorded \
                 temperatures; 20 µm/h, as in a room that warms by \
                 2 K in an hour, or over a recording without a clock; 50 µm for a cold robot (a UR5 \
                 starts a recording some 60 µm off); of a joint as many µrad, of a link as many µm, of \
-                the arm as many µm/m",
+                the arm as many µm/m; of a tracker the third of that (3 m away it is as much: air changes \
+                its scale by 1 µm/m per kelvin, what a camera is made of by more)",
         parameters: &[
             (&["x_um_per_k", "y_um_per_k", "z_um_per_k"], "displacement per kelvin"),
             (&["x_um_per_h", "y_um_per_h", "z_um_per_h"], "displacement per hour"),
@@ -106,6 +110,10 @@ pub static THERMAL_DRIFT: CalibrationEffect = CalibrationEffect {
             (&["zero_urad_per_k", "zero_urad_per_h", "zero_urad"], "the same of a joint's zero"),
             (&["length_um_per_k", "length_um_per_h", "length_um"], "the same of a link's length"),
             (&["growth_um_per_m_per_k", "growth_um_per_m_per_h", "growth_um_per_m"], "growth of all links"),
+            (
+                &["scale_um_per_m_per_k", "scale_um_per_m_per_h", "scale_um_per_m"],
+                "growth of a tracker's scale",
+            ),
         ],
         needs: "temperatures or times of the rows; without them only the order of the rows",
         cause: "thermal drift",
@@ -147,6 +155,7 @@ fn drifts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
             drifting(Frame::Tool, &|there, axis| there.flange.rotation.column(axis).into()),
             of_arm(context, course, &values),
         ];
+        entries.extend(context.is_tracked().then(|| of_tracker(context, course, &values)));
         entries.extend(of_joints(context, course, &values));
         entries
     };
@@ -160,6 +169,20 @@ fn of_arm(context: &Context, course: Course, values: &[f64]) -> Entry {
     let location = Location::Form { part: Part::Arm, form: Warmed::Arm.form(course) };
     let parameter = linear(format!("growth_{suffix}"), usual(course, values));
     single(&THERMAL_DRIFT, location, parameter, column).by(Law::Warms(course, Warmed::Arm))
+}
+
+/// The scale of a tracker grows: k·(ball − tracker). Nobody knows where it stands, so −k·(tracker −
+/// base) is three numbers of their own; from far away a base that drifts does nearly the same.
+fn of_tracker(context: &Context, course: Course, values: &[f64]) -> Entry {
+    let (share, suffix) = (course.share_unit().0, course.unit().0);
+    let size = usual(course, values);
+    let grown = context.column(|row, there| (there.tip - there.origin[0]) * values[row]);
+    let mut parameters = vec![(linear(format!("scale_{share}"), size / TRACKER), grown)];
+    let names = ["x", "y", "z"].map(|axis| format!("{axis}_{suffix}"));
+    let moved = |axis: usize| context.column(|row, _| unit(axis) * values[row]);
+    parameters.extend(three(&[0, 1, 2].map(|axis| names[axis].as_str()), size, moved));
+    let location = Location::Form { part: Part::Tracker, form: Warmed::Tracker.form(course) };
+    Entry::new(&THERMAL_DRIFT.effect, location, parameters).by(Law::Warms(course, Warmed::Tracker))
 }
 
 /// A joint's zero, or the length of its link, that follows what a drift follows.
@@ -259,6 +282,10 @@ fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
         Law::Warms(course, Warmed::Arm) => {
             let by = first(finding).with_unit(course.share_unit().1);
             format!("The arm grows by {by} with {course}, all its links alike")
+        }
+        Law::Warms(course, Warmed::Tracker) => {
+            let by = first(finding).with_unit(course.share_unit().1);
+            format!("The scale of the tracker grows by {by} with {course}")
         }
         Law::Only
         | Law::Gear(_)

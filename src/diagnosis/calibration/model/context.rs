@@ -266,7 +266,7 @@ impl<'a> Context<'a> {
     /// True where clamps show displacements that vary by more than the scatter: otherwise the true
     /// displacement is unknown, and so is every effect in proportion to it.
     pub fn shows_displacements(&self) -> bool {
-        if self.has_sockets() || self.recording.groups.iter().all(|group| group.name.is_tracked()) {
+        if self.has_sockets() || self.is_tracked() {
             return false;
         }
         let rows = 0..self.configurations.len();
@@ -310,6 +310,11 @@ impl<'a> Context<'a> {
 
     pub fn has_sockets(&self) -> bool {
         matches!(self.recording.targets, Targets::Sockets(_))
+    }
+
+    /// True where one device, such as a laser tracker, has seen the ball wherever it was.
+    pub fn is_tracked(&self) -> bool {
+        !self.has_sockets() && self.recording.groups.iter().all(|group| group.name.is_tracked())
     }
 
     /// `pose 7`, with its clamp or socket where several poses have that name.

@@ -33,7 +33,7 @@ pub enum Law {
     Hung(Hung),
     /// Drift.
     Drift(Course, Frame),
-    /// Drift of a joint or its link, or growth of the arm.
+    /// Drift of a joint or its link, growth of the arm, or of what a tracker shows.
     Warms(Course, Warmed),
     /// A clamp, a socket or the sockets of a plate that moved, by their numbers among the groups of
     /// the recording.
@@ -96,7 +96,7 @@ pub enum Frame {
     Tool,
 }
 
-/// What of a joint drifts, or of all of them.
+/// What of a joint drifts, or of all of them, or of the tracker that sees them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Warmed {
@@ -106,6 +106,8 @@ pub enum Warmed {
     Length,
     /// The lengths of all links, by one share.
     Arm,
+    /// The scale of the tracker, which stands somewhere.
+    Tracker,
 }
 
 impl Law {
@@ -225,7 +227,7 @@ impl Warmed {
         match self {
             Warmed::Zero => format!("zero, with {course}"),
             Warmed::Length => format!("length of its link, with {course}"),
-            Warmed::Arm => format!("with {course}"),
+            Warmed::Arm | Warmed::Tracker => format!("with {course}"),
         }
     }
 }

@@ -75,8 +75,7 @@ fn drives(context: &Context, (variable, name, x): Clock) -> Vec<Entry> {
 
 /// Of a recording that a tracker made.
 fn scales(context: &Context) -> Vec<Entry> {
-    let is_tracked = context.recording.groups.iter().all(|group| group.name.is_tracked());
-    let Some(x) = order(context).filter(|_| is_tracked && !context.has_sockets()) else { return Vec::new() };
+    let Some(x) = order(context).filter(|_| context.is_tracked()) else { return Vec::new() };
     let along = Some(Variable::Order);
     let follows = "follows the distance from the tracker, more or less with the order of the poses";
     let parameters = (1..=MOST).map(|k| {

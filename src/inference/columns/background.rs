@@ -148,3 +148,23 @@ impl Folded {
         moved
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_zero_is_as_uncertain_as_readings_of_its_own_sensor() {
+        let of_sensor = |row: usize, k: usize| f64::from(u8::from(row % 2 == k));
+        let evidence = Evidence {
+            offsets: DMatrix::from_fn(8, 2, of_sensor),
+            least_offset: vec![0.0, 4.0],
+            spread: (0..8).map(|row| [6.0, 1.0][row % 2]).collect(),
+            ..Evidence::new(DVector::zeros(8))
+        };
+        let mut evidence = folded(&evidence).evidence;
+        size_offsets(&mut evidence, 2.0);
+        let sizes = [0, 1].map(|k| evidence.background.column(k).amax());
+        assert_eq!(sizes, [6.0 * OFFSET * 2.0, 4.0f64.hypot(OFFSET * 2.0)]);
+    }
+}

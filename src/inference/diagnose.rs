@@ -93,10 +93,9 @@ fn diagnose_with(model: &dyn ForwardModel, evidence: &Evidence) -> Diagnosis {
 }
 
 /// The same, with the noise of each sensor at most so many times anew.
-fn diagnose_in(model: &dyn ForwardModel, recorded: &Evidence, noises: usize) -> Diagnosis {
-    let (whole, evidence) = (model, recorded);
-    let model = &Linearised::new(model);
-    let folded = background::folded(evidence);
+fn diagnose_in(whole: &dyn ForwardModel, recorded: &Evidence, noises: usize) -> Diagnosis {
+    let model = &Linearised::new(whole);
+    let folded = background::folded(recorded);
     let (settled, known) = settled(model, &folded.evidence);
     let evidence = &settled;
     let model = &model.in_parts(evidence, &evidence.fold);

@@ -144,6 +144,12 @@ impl Evidence {
         self.spread.iter().map(|own| own.powi(-2)).collect()
     }
 
+    /// False of a datum that was found far off, and hardly counts for that.
+    pub fn counts(&self, row: usize) -> bool {
+        const HARDLY: f64 = 1e-3;
+        self.weight[row] * self.spread[row].powi(2) > HARDLY
+    }
+
     /// Numbers of the folds, ascending.
     pub fn folds(&self) -> Vec<usize> {
         let mut folds: Vec<usize> =

@@ -22,8 +22,6 @@ const CORRELATIONS: [f64; 7] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7];
 const RATIOS: [f64; 13] = [0.0, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0, 100.0, 1e3, 1e4, 1e5];
 /// Ln of the likelihood ratio from which on neighbours resemble each other.
 const WORTH: f64 = 3.0;
-/// What a datum far off counts at most.
-const HARDLY: f64 = 1e-3;
 /// Fewer repeated data say nothing.
 const FEWEST: usize = 20;
 
@@ -31,16 +29,16 @@ const FEWEST: usize = 20;
 /// a datum: r repeats leave (r − 1)/r of it. Nothing for what was not repeated, or hardly counts:
 /// what is far off says nothing of the others.
 pub fn deviations(evidence: &Evidence, left: &DVector<f64>) -> Vec<Option<f64>> {
-    let counts = |row: usize| evidence.weight[row] * evidence.spread[row].powi(2) > HARDLY;
     let mut replicates: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
-    for (row, &group) in evidence.replicate_group.iter().enumerate().filter(|(row, _)| counts(*row)) {
+    for (row, &group) in evidence.replicate_group.iter().enumerate().filter(|(row, _)| evidence.counts(*row))
+    {
         let (sum, count) = replicates.entry(group).or_default();
         (*sum, *count) = (*sum + left[row], *count + 1.0);
     }
     let off = |(row, group): (usize, &usize)| {
         let (sum, repeats) = *replicates.get(group)?;
         let scale = (evidence.weight[row] * repeats / (repeats - 1.0)).sqrt();
-        (counts(row) && repeats > 1.0).then(|| (left[row] - sum / repeats) * scale)
+        (evidence.counts(row) && repeats > 1.0).then(|| (left[row] - sum / repeats) * scale)
     };
     evidence.replicate_group.iter().enumerate().map(off).collect()
 }

@@ -13,7 +13,7 @@
 use nalgebra::DVector;
 
 use crate::inference::Evidence;
-use crate::inference::noise::scatter::{OFF, Tails, in_spread};
+use crate::inference::noise::scatter::{Tails, in_spread};
 
 /// Fewer data of a sensor do not say what it scatters by.
 const FEWEST: usize = 8;
@@ -36,8 +36,7 @@ pub fn own_spread(evidence: &Evidence, residual: &DVector<f64>, beyond: (f64, f6
         return None;
     }
     let even = in_spread(evidence, residual);
-    let counts = |row: &usize| evidence.weight[*row] * evidence.spread[*row].powi(2) > OFF;
-    let all: Vec<usize> = (0..evidence.recorded).filter(counts).collect();
+    let all: Vec<usize> = (0..evidence.recorded).filter(|&row| evidence.counts(row)).collect();
     let tails = Tails::of(&even.select_rows(&all), evidence.rounding());
     let rows_of = |sensor: usize| -> Vec<usize> {
         all.iter().copied().filter(|&row| evidence.sensor[row] == sensor).collect()
@@ -50,12 +49,12 @@ pub fn own_spread(evidence: &Evidence, residual: &DVector<f64>, beyond: (f64, f6
     let mut spread = evidence.spread.clone();
     for (row, spread) in spread.iter_mut().enumerate() {
         let (least, most) = evidence.noise_range[row];
-        let own = times[evidence.sensor[row]];
-        let new = (*spread * own).clamp(TIMES.0, TIMES.1);
-        *spread = match own > 1.0 {
-            true => new.min(most / usual.scale).max(*spread),
-            false => new.max(least / usual.scale).min(*spread),
-        };
+        let new = *spread * times[evidence.sensor[row]];
+        if new > *spread {
+            *spread = new.min(TIMES.1).min(most / usual.scale).max(*spread);
+        } else if new < *spread {
+            *spread = new.max(TIMES.0).max(least / usual.scale).min(*spread);
+        }
     }
     let is_other = |(new, old): (&f64, &f64)| (new / old).ln().abs() > SAME.ln();
     spread.iter().zip(&evidence.spread).any(is_other).then_some(spread)
@@ -112,6 +111,7 @@ fn usual(scales: &[Option<Scale>]) -> Option<Scale> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::inference::noise::scatter::OFF;
     use crate::statistics::Random;
 
     /// Three sensors in turn, of 60 data each, under loads along three axes; each datum of one
@@ -144,7 +144,25 @@ mod tests {
             // what it has already is not given once more
             let known: Vec<f64> = worse.sensor.iter().map(|k| [1.0, 6.0, 1.0][*k]).collect();
             assert_eq!(spread(&Evidence { spread: known, ..worse }), None, "{seed}");
+            // however much that is
+            let stiff = of_noise(seed, |sensor, _| [1.0, 50.0, 1.0][sensor]);
+            let known: Vec<f64> = stiff.sensor.iter().map(|k| [1.0, 50.0, 1.0][*k]).collect();
+            assert_eq!(spread(&Evidence { spread: known, ..stiff }), None, "{seed}");
         }
+    }
+
+    #[test]
+    fn readings_far_off_say_nothing_of_a_sensor() {
+        let mut evidence = of_noise(3, |_, _| 1.0);
+        evidence.spread = (0..180).map(|row| [1.0, 6.0, 1.0][row % 3]).collect();
+        evidence.weight = evidence.even_weight();
+        for row in (0..180).filter(|row| row % 3 == 1) {
+            evidence.residual[row] *= 6.0;
+            if row % 5 == 0 {
+                (evidence.residual[row], evidence.weight[row]) = (900.0, OFF);
+            }
+        }
+        assert_eq!(spread(&evidence), None);
     }
 
     #[test]

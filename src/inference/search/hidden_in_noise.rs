@@ -56,11 +56,8 @@ pub fn hidden_in_noise(model: &Linearised<'_>, search: &Search, longest: &Hypoth
 /// Without regard to tails; what was far off stays so.
 fn evenly_weighted(evidence: &Evidence, settled: &Evidence) -> Evidence {
     let mut weight = evidence.even_weight();
-    for (row, weight) in weight.iter_mut().enumerate() {
-        if settled.weight[row] <= OFF * settled.spread[row].powi(-2) {
-            *weight = OFF;
-        }
-    }
+    let off = (0..weight.len()).filter(|&row| !settled.counts(row));
+    off.for_each(|row| weight[row] = OFF);
     Evidence { weight, information: 1.0, ..evidence.clone() }
 }
 

@@ -121,7 +121,7 @@ fn a_tracker_of_another_scale_from_a_row_on_is_no_move() {
 }
 
 /// Seen from 11 m, what air does to the scale of a laser, 1 µm/m per kelvin, is nearly a base that
-/// drifts, and both are said; a camera that grows 3 m away is told from one. A base that drifts
+/// drifts, and both are said; a camera that grows 3 m away is no such base. A base that drifts
 /// keeps its name, for a tracker may always stand farther away.
 #[test]
 fn a_tracker_that_warms_is_told_from_a_base_that_drifts_or_said_beside_it() {

@@ -16,6 +16,7 @@
 //! something else does.
 
 use std::collections::BTreeMap;
+use std::hash::Hash;
 
 use super::datum::{Datum, Imposed};
 use super::resolution::resolution;
@@ -48,14 +49,9 @@ pub fn spread(data: &[Datum], header: &RigHeader) -> Vec<f64> {
     if let Some(spread) = stated(data, header) {
         return spread;
     }
-    // there is one load cell, and one that is read at each of some stations is one sensor; but
-    // along an axis on which the rod is far stiffer it is the displacement that scatters, as much
-    // as the others do at least
-    let stiffer = stiffer(data).map(|stiffer| if stiffer > ALIKE { stiffer } else { 1.0 });
-    let stiff = |d: &Datum| if d.imposed.is_some() { stiffer[d.direction.axis.index()] } else { 1.0 };
-    let cell = |d: &Datum| (stiff(d) > 1.0).then_some(d.direction.axis);
-    let sensor = numbers(data, &cell);
-    let channel = numbered(data.iter().map(|d| (d.imposed.is_none().then_some(d.channel), cell(d))));
+    let stiff = stiff(data);
+    let sensor = numbers(data, &stiff, Datum::sensor);
+    let channel = numbers(data, &stiff, |datum| datum.channel);
     let of_number = |numbers: &[usize], number: usize| {
         scatter(
             &data.iter().zip(numbers).filter(|(_, own)| **own == number).map(|(d, _)| d).collect::<Vec<_>>(),
@@ -67,19 +63,16 @@ pub fn spread(data: &[Datum], header: &RigHeader) -> Vec<f64> {
         of_number(&sensor, k).or_else(|| of_number(&channel, channel[first]))
     };
     let scatters: Vec<Option<Scatter>> = (0..count).map(of_sensor).collect();
-    let Some(usual) = usual(&scatters, &sensor) else { return data.iter().map(stiff).collect() };
+    let Some(usual) = usual(&scatters, &sensor) else { return stiff };
     let beside = |number: usize| scatters[number].as_ref().map_or(1.0, |scatter| scatter.beside(&usual));
-    data.iter().zip(&sensor).map(|(d, &number)| beside(number).max(stiff(d))).collect()
+    sensor.iter().zip(stiff).map(|(&number, stiff)| beside(number).max(stiff)).collect()
 }
 
 /// The number of the sensor of each datum, and the least and the most that the noise of that can
 /// be, m: it is no surer than its display, and none of its differences scatters by less, but by
 /// chance.
 pub fn sensors(data: &[Datum]) -> (Vec<usize>, Vec<(f64, f64)>) {
-    let stiffer = stiffer(data);
-    let sensor = numbers(data, &|d| {
-        (d.imposed.is_some() && stiffer[d.direction.axis.index()] > ALIKE).then_some(d.direction.axis)
-    });
+    let sensor = numbers(data, &stiff(data), Datum::sensor);
     let count = sensor.iter().max().map_or(0, |last| last + 1);
     let range = |number: usize| {
         let own: Vec<&Datum> =
@@ -92,10 +85,23 @@ pub fn sensors(data: &[Datum]) -> (Vec<usize>, Vec<(f64, f64)>) {
     (sensor, noise_range)
 }
 
-/// There is one load cell, and one sensor that is read at each of some stations; but loads are of
-/// a sensor of their own where they are of a `cell` of their own.
-fn numbers(data: &[Datum], cell: &dyn Fn(&Datum) -> Option<Axis>) -> Vec<usize> {
-    numbered(data.iter().map(|d| (d.imposed.is_none().then(|| d.sensor()), cell(d))))
+/// For each measured load how much more it scatters than a displacement by that alone: along an axis
+/// on which the rod is far stiffer it is the displacement that scatters, as much as the others do
+/// at least. 1 of all else.
+fn stiff(data: &[Datum]) -> Vec<f64> {
+    let stiffer = stiffer(data).map(|stiffer| if stiffer > ALIKE { stiffer } else { 1.0 });
+    let of_datum = |d: &Datum| if d.imposed.is_some() { stiffer[d.direction.axis.index()] } else { 1.0 };
+    data.iter().map(of_datum).collect()
+}
+
+/// The number of what each datum was read by: `own` of an offset; there is one load cell, but loads
+/// along a stiff axis are numbered apart.
+fn numbers<K: Eq + Hash>(data: &[Datum], stiff: &[f64], own: impl Fn(&Datum) -> K) -> Vec<usize> {
+    numbered(
+        data.iter().zip(stiff).map(|(d, stiff)| {
+            (d.imposed.is_none().then(|| own(d)), (*stiff > 1.0).then_some(d.direction.axis))
+        }),
+    )
 }
 
 /// By axis how much more a measured load, as it counts, is than the displacement that was imposed:

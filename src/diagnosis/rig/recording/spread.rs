@@ -85,9 +85,9 @@ pub fn sensors(data: &[Datum]) -> (Vec<usize>, Vec<(f64, f64)>) {
     (sensor, noise_range)
 }
 
-/// For each measured load how much more it scatters than a displacement by that alone: along an axis
-/// on which the rod is far stiffer it is the displacement that scatters, as much as the others do
-/// at least. 1 of all else.
+/// For each measured load how much more it scatters than a displacement by that alone: along an
+/// axis on which the rod is far stiffer it is the displacement that scatters, as much as the others
+/// do at least. 1 of all else.
 fn stiff(data: &[Datum]) -> Vec<f64> {
     let stiffer = stiffer(data).map(|stiffer| if stiffer > ALIKE { stiffer } else { 1.0 });
     let of_datum = |d: &Datum| if d.imposed.is_some() { stiffer[d.direction.axis.index()] } else { 1.0 };

@@ -89,6 +89,9 @@ pub fn diagnose_rig_with(
             answer.json["applied"] = answer.files.iter().map(|(name, _)| name.as_str()).collect();
         }
         (Some(_), None) => answer.report.warnings.push(match rod {
+            Some(_) if found.unit_is_unknown() => {
+                "--apply has no effect: what unit the readings have must be looked up".into()
+            }
             Some(_) => "--apply has no effect: nothing was found that could be applied".into(),
             None => "--apply has no effect without a rod file".into(),
         }),

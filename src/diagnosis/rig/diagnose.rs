@@ -204,6 +204,10 @@ pub fn diagnose_with(
         if let Some((recorded, evidence, _)) = &recorded {
             add_stiffness(&mut mended.found, recorded, evidence, &diagnosis);
         }
+        // what the rod itself had to say of the readings' unit they do not say of the rod
+        if mended.found.iter().any(mistakes::is_unknown_unit) {
+            diagnosis.nominal.clear();
+        }
         diagnosis.findings.splice(0..0, mended.found);
         let error = recorded.map(|(_, evidence, _)| rms(&evidence.residual));
         model.as_recorded =

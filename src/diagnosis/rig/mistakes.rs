@@ -13,7 +13,8 @@
 //!
 //! A mistake is named where what it acts on is more than 22 % (rms) off without it and plausible
 //! with it, at odds of 1000 against everything else. Physics may stand beside: a unit counts where
-//! what remains is a factor of 0.8 to 1.25.
+//! what remains is a factor of 0.8 to 1.25. A factor that is no unit's and that no physics reaches
+//! is a mistake too (`labels/unknown_unit.rs`).
 
 mod columns_and_rod;
 mod copies;
@@ -38,6 +39,7 @@ mod some_rows;
 mod tests;
 mod trials;
 
+pub(super) use self::labels::is_unknown_unit;
 pub(super) use self::lookalikes::{is_one_factor, lookalikes};
 pub(super) use self::mended::Mended;
 pub(super) use self::rods::OtherRod;

@@ -16,6 +16,9 @@ use crate::rod::Rod;
 
 /// So many lines are enough.
 const MOST_LINES: usize = 45;
+/// So many times softer than its pipes a rod may be beside a unit's factor, where nothing but some
+/// factor explains the readings: what joins its parts yields too.
+const SOFTER: f64 = 1.5;
 
 impl Mended {
     /// The slope of each line by the rod, in the scale that most lines have.
@@ -69,10 +72,19 @@ impl Mended {
         let has = |k: usize| pairs.iter().any(|pair| pair[k].is_some());
         let (bodies, of_rod): (Vec<Body>, Vec<PossibleMistake>) =
             rods::all(&rod, others, [has(0), has(1)]).into_iter().unzip();
-        let mut possible = labels::all(&Labels::of(&all, self.readings.load_column));
+        let names = Labels::of(&all, self.readings.load_column);
+        let mut possible = labels::all(&names);
         possible.extend(of_rod);
+        let unknown = match is_possible {
+            true => labels::unknown_units(&names, |channels| on_rod.log_scale_of(channels)),
+            false => Vec::new(),
+        };
+        let known = possible.len();
+        possible.extend(unknown.into_iter().filter(|unknown| !on_rod.may_be_loose(unknown)));
+        // where no physics is a rival, the likelier one of a unit's factor and any other counts
+        let softer = if possible.len() > known { SOFTER } else { 1.0 };
         let physics = search::physics(&bodies, on_rod.pairs);
-        let search = MistakeSearch { lines: on_rod, possible: &possible, bodies: &physics };
+        let search = MistakeSearch { lines: on_rod, possible: &possible, bodies: &physics, softer };
         let Some((best, found)) = search.found() else { return Ok(()) };
         for one in found {
             self.add_mistake(&possible, &one);

@@ -11,12 +11,14 @@
 //! and s comes near a unit's, these readings cannot say which of the two it is. Nor can they where
 //! the readings themselves, without what the other findings do, are one factor of ŷ: a rod with a
 //! joint that is stiffer all over is not quite what a unit makes of it.
+//!
+//! A factor that is beyond what moduli and walls do is a rival too, whatever unit it is of.
 
 use nalgebra::DVector;
 
 use super::super::effects::mistakes::UNIT_MISTAKE;
 use super::super::model::RigModel;
-use super::labels::{HARDLY_BESIDE, of_loads};
+use super::labels::{BEYOND_A_ROD, HARDLY_BESIDE, of_loads};
 use crate::diagnosis::rig::recording::columns::load_column;
 use crate::inference::{Evidence, Finding, ForwardModel, Location, Rival, Term};
 use crate::linalg::least_squares;
@@ -51,11 +53,13 @@ pub fn lookalikes(model: &RigModel, evidence: &Evidence, findings: &[Finding], n
         [fitted, recorded].into_iter().flatten().any(|scale| (scale / factor).ln().abs() < HARDLY_BESIDE.ln())
     };
     let units = of_loads(model.readings.load_column).into_iter();
-    let near = units.filter(|(_, factor)| is_near(*factor));
-    near.map(|(unit, _)| {
-        Rival::without_term(&UNIT_MISTAKE, Location::key(format!("{column} in {unit}")), 1.0)
-    })
-    .collect()
+    let near = units.filter(|(_, factor)| is_near(*factor)).map(|(unit, _)| format!("{column} in {unit}"));
+    let mut meant: Vec<String> = near.collect();
+    let is_far = |scale: f64| scale.ln().abs() > BEYOND_A_ROD.ln();
+    if meant.is_empty() && [fitted, recorded].into_iter().flatten().any(is_far) {
+        meant.push(format!("of {column} or of the readings"));
+    }
+    meant.into_iter().map(|unit| Rival::without_term(&UNIT_MISTAKE, Location::key(unit), 1.0)).collect()
 }
 
 /// True where the readings as they were `recorded`, beside the rod file as it is, are one factor of

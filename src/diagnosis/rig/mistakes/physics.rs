@@ -12,32 +12,21 @@
 //! Everything is relative to the rod, so that units do not matter, and the density is that of the
 //! slopes as recorded, so that no rescaling is favoured.
 
+mod far_off;
 mod mood;
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3, Vector3};
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, Vector3};
 
+use self::far_off::{SINGLE_ANGLE, SINGLE_POINT, Solved};
 use self::mood::{MOODS, Mood};
 use super::lines::Line;
 use crate::diagnosis::rig::mechanics::structure::{End, Point, Softening, Structure, between};
 use crate::error::Result;
 use crate::rod::{NominalNumber, Rod};
 use crate::spatial::Axis;
-use crate::units::DEG;
 
-/// One thing far off, each as likely.
-const SINGLE: f64 = -5.0;
-/// Joints have many places.
-const ONE_JOINT: f64 = -7.5;
-const SINGLE_JOINT: f64 = 0.6;
-const SINGLE_SHEAR: f64 = 1.0;
-const SINGLE_AXIS: f64 = 0.3;
-const SINGLE_CHANNEL: f64 = 0.3;
-const SINGLE_TURN: f64 = 0.09;
-/// A point of loads or sensors, as a share of the rod's length; of so many stations at most.
-const SINGLE_POINT: f64 = 0.05;
+/// Points of loads, and of sensors, at so many stations at most.
 const MOST_POINTS: usize = 12;
-/// The angle between the pipes, rad.
-const SINGLE_ANGLE: f64 = 5.0 * DEG;
 
 /// Lines have one factor in common where that of so large a share of them differs by less than ln
 /// 2.
@@ -173,6 +162,12 @@ impl Seen<'_> {
         (0..self.lines.len()).map(|k| self.slope(k, &self.physics.compliance)).collect()
     }
 
+    /// Ln of the factor that the lines of some channels have in common, measured over expected.
+    pub fn log_scale_of(&self, channels: &[Axis]) -> f64 {
+        let counts = |line: &Line| f64::from(u8::from(channels.contains(&line.channel)));
+        self.log_scale(&self.expected(), counts).0
+    }
+
     fn slope(&self, line: usize, parts: &[Matrix3<f64>]) -> f64 {
         let view = &self.views[line];
         view.factor * parts[self.pair[line]][(view.channel.index(), view.axis.index())]
@@ -236,7 +231,7 @@ impl Seen<'_> {
                 let price = -0.5 * (scale / prior).powi(2) - (prior / about).ln();
                 terms.push(mood.log_weight + price + solved.log_density);
                 if is_first {
-                    terms.extend(self.singles(&columns, &solved));
+                    terms.extend(solved.with_one_far_off(&columns));
                 }
             }
         }
@@ -248,6 +243,17 @@ impl Seen<'_> {
             log_scale,
             log_scale_of_known,
         }
+    }
+
+    /// Ln of the density of the slopes where one part gives way by nobody knows how much.
+    pub fn log_evidence_of_loose(&self) -> f64 {
+        let expected = self.expected();
+        let columns = self.columns(&expected);
+        let solved = |mood| Some((mood, self.solved(&expected, &columns, mood, 0.0, 0.0)?));
+        let terms = MOODS.iter().filter_map(solved).flat_map(|(mood, solved)| {
+            solved.with_one_loose(&columns).into_iter().map(|term| mood.log_weight + term)
+        });
+        terms.fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Lines that would move against their load.
@@ -347,39 +353,6 @@ impl Seen<'_> {
         let solved = root.solve(&off);
         Some(Solved { log_density: -0.5 * off.dot(&solved) - log_root, root, solved })
     }
-
-    /// One column after another far off: by the Sherman–Morrison formula.
-    fn singles(&self, columns: &Columns, with: &Solved) -> Vec<f64> {
-        let mut terms = Vec::new();
-        let mut single = |column: &DVector<f64>, size: f64, weight: f64, only_softer: bool| {
-            let projection = column.dot(&with.solved);
-            if only_softer && projection <= 0.0 {
-                return;
-            }
-            // cᵀΣ⁻¹c = |L⁻¹c|²
-            let Some(along) = with.root.l_dirty().solve_lower_triangular(column) else { return };
-            let own = along.norm_squared();
-            let grown = 1.0 + size * size * own;
-            let gained = 0.5 * (size * projection).powi(2) / grown - 0.5 * grown.ln();
-            terms.push(weight + with.log_density + gained);
-        };
-        columns.joints.iter().for_each(|joint| single(joint, SINGLE_JOINT, ONE_JOINT, true));
-        // what gives way in bending mostly does so in torsion
-        columns.joints.chunks(2).for_each(|both| {
-            single(
-                &both.iter().fold(DVector::zeros(both[0].len()), |sum, part| sum + part),
-                SINGLE_JOINT,
-                ONE_JOINT,
-                true,
-            );
-        });
-        single(&columns.shear, SINGLE_SHEAR, SINGLE, true);
-        columns.axes.iter().for_each(|axis| single(axis, SINGLE_AXIS, SINGLE, false));
-        columns.channels.iter().for_each(|channel| single(channel, SINGLE_CHANNEL, SINGLE, false));
-        columns.turns.iter().for_each(|turn| single(turn, SINGLE_TURN, SINGLE, false));
-        columns.points.iter().for_each(|point| single(point, 1.0, SINGLE, false));
-        terms
-    }
 }
 
 struct Columns {
@@ -392,10 +365,4 @@ struct Columns {
     /// Σ c·cᵀ of the whole rod, shear, joints, axes, channels and turns: the same for all moods.
     squares: [DMatrix<f64>; 6],
     own: DVector<f64>,
-}
-
-struct Solved {
-    log_density: f64,
-    root: Cholesky<f64, Dyn>,
-    solved: DVector<f64>,
 }

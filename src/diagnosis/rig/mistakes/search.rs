@@ -3,19 +3,18 @@
 //! A beam search: one mistake, then a second beside each of the best, then a third. A combination
 //! is kept where it is a thousand times more probable than the one that it grew from.
 
-use super::super::effects::mistakes::{SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
+mod needed;
+
+pub(super) use self::needed::{ALIKE, NamedMistake};
 use super::lines::Line;
 use super::physics::{Physics, Seen, Verdict, View};
 use super::possible::PossibleMistake;
 use super::relabelling::Relabelling;
 use super::rods::Body;
-use crate::inference::Kind;
 use crate::spatial::Axis;
 
 /// A mistake is named at these odds against all else, physics included: ln 1000.
 pub(in crate::diagnosis::rig) const ODDS: f64 = 6.907_755;
-/// Another mistake within these odds explains alike: ln 20.
-pub(super) const ALIKE: f64 = 2.995_732;
 /// A rod is never bent by more than this share of its length, and what it costs to say so: ln.
 const BENT: f64 = 0.05;
 const BENT_TOO_FAR: f64 = 15.0;
@@ -25,14 +24,6 @@ const MOST_MISTAKES: usize = 3;
 const BEAM: usize = 6;
 /// Share of the squares of the slopes that ordinary physics hardly leaves: 22 % rms.
 const IMPLAUSIBLE: f64 = 0.05;
-/// What a key in another unit must leave at least: 60 % rms.
-const FAR_OFF: f64 = 0.36;
-/// And that a corrected recording may leave: a unit's factor stands for itself, a sign is one
-/// whatever the rod does.
-const LEFT_BY_FACTOR: f64 = 0.06;
-const LEFT_BY_NAME: f64 = 0.15;
-/// At most this share of what was left before.
-const CURED: f64 = 0.25;
 /// A channel that shows less than this share of the largest deflection says nothing.
 const SHOWN: f64 = 0.03;
 
@@ -58,20 +49,6 @@ pub(super) struct Combination {
     pub log_scale: f64,
     /// Ln of its probability, less a constant.
     pub score: f64,
-}
-
-/// A mistake that was found.
-pub(super) struct NamedMistake {
-    /// Its number among the possible ones.
-    pub number: usize,
-    /// Ln of the odds against what there is without it.
-    pub log_odds: f64,
-    /// Other possible ones that explain as much in its place, with the odds against them.
-    pub rivals: Vec<(usize, f64)>,
-    /// Ln of what the lines have in common, measured over expected, without it.
-    pub log_scale_before: f64,
-    /// Root mean square of what it changes of the expected deflections at the largest loads, m.
-    pub explains: f64,
 }
 
 impl LinesOnRod<'_> {
@@ -139,6 +116,18 @@ impl LinesOnRod<'_> {
         self.seen(physics, &Relabelling::default()).verdict()
     }
 
+    /// Ln of the factor that the lines of some channels have in common, measured over expected.
+    pub fn log_scale_of(&self, channels: &[Axis]) -> f64 {
+        self.seen(self.base, &Relabelling::default()).log_scale_of(channels)
+    }
+
+    /// True where a part that is loose, by nobody knows how much, explains about as much.
+    pub fn may_be_loose(&self, mistake: &PossibleMistake) -> bool {
+        let verdict = self.seen(self.base, &mistake.relabelling).verdict();
+        let loose = self.seen(self.base, &Relabelling::default()).log_evidence_of_loose();
+        verdict.log_evidence + RARE + mistake.log_prior < loose + ODDS
+    }
+
     fn seen<'s>(&'s self, physics: &'s Physics, relabelling: &Relabelling) -> Seen<'s> {
         let view = |line: &Line| {
             let (axis, channel) = (line.axis.index(), line.channel.index());
@@ -160,6 +149,8 @@ pub(super) struct MistakeSearch<'a> {
     pub possible: &'a [PossibleMistake],
     /// By number of the body, from 1; `None` where the readings cannot be on it.
     pub bodies: &'a [Option<Physics>],
+    /// So many times softer than its file the rod may be beside any of them.
+    pub softer: f64,
 }
 
 impl MistakeSearch<'_> {
@@ -182,8 +173,9 @@ impl MistakeSearch<'_> {
             });
         }
         let own = self.scored(mistakes, relabelling)?;
+        let is_softer = own.log_scale >= 0.0 && own.log_scale <= self.softer.ln();
         let is_near = |&number: &usize| own.log_scale.abs() <= self.possible[number].within.ln();
-        own.mistakes.iter().all(is_near).then_some(own)
+        (is_softer || own.mistakes.iter().all(is_near)).then_some(own)
     }
 
     fn gained(after: &Combination, before: &Combination) -> f64 {
@@ -193,8 +185,9 @@ impl MistakeSearch<'_> {
     /// The mistakes, with what the readings and the rod become.
     pub fn found(&self) -> Option<(Combination, Vec<NamedMistake>)> {
         let base = self.combination(Vec::new())?;
-        let mut best = base.clone();
-        let mut frontier = vec![base.clone()];
+        let mut best = base.score;
+        let mut frontier = vec![base];
+        let mut likeliest: Vec<Combination> = Vec::new();
         for _ in 0..MOST_MISTAKES {
             let mut next: Vec<Combination> = Vec::new();
             for from in &frontier {
@@ -214,78 +207,14 @@ impl MistakeSearch<'_> {
             next.sort_by(|a, b| b.score.total_cmp(&a.score));
             next.truncate(BEAM);
             match next.first() {
-                Some(first) if first.score > best.score + ODDS => best = first.clone(),
+                Some(first) if first.score > best + ODDS => best = first.score,
                 _ => break,
             }
+            // of as many mistakes the likelier come first, and more where these are needed
+            likeliest.splice(0..0, next.iter().cloned());
             frontier = next;
         }
-        // one that is not needed, or does not cure what it acts on, does not speak against the
-        // others
-        while !best.mistakes.is_empty() {
-            let judged: Vec<Option<NamedMistake>> =
-                best.mistakes.iter().map(|&number| self.judged(&best, number)).collect();
-            let Some(wrong) = judged.iter().position(Option::is_none) else {
-                let mut found: Vec<NamedMistake> = judged.into_iter().flatten().collect();
-                found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
-                return Some((best, found));
-            };
-            best.mistakes.remove(wrong);
-            best = self.combination(best.mistakes)?;
-        }
-        None
-    }
-
-    /// One mistake of several; `None` where it is not needed or does not cure what it acts on.
-    fn judged(&self, best: &Combination, number: usize) -> Option<NamedMistake> {
-        let rest: Vec<usize> = best.mistakes.iter().copied().filter(|&other| other != number).collect();
-        let is_wrong_body =
-            rest.iter().all(|&other| self.possible[other].relabelling.body == 0) && !self.lines.is_possible;
-        let before = match is_wrong_body {
-            true => Combination { score: f64::NEG_INFINITY, ..best.clone() },
-            // what is left without it may be beyond what a unit allows
-            false => self.without(&rest)?,
-        };
-        let log_odds = (best.score - before.score).min(1e3);
-        let expected = self.lines.seen(self.physics(&best.relabelling)?, &best.relabelling).expected();
-        let (cured, explains) = match is_wrong_body {
-            true => (true, 0.0),
-            false => {
-                let old = self.lines.seen(self.physics(&before.relabelling)?, &before.relabelling).expected();
-                let is_changed =
-                    |&k: &usize| (expected[k] - old[k]).abs() > 0.1 * expected[k].abs().max(old[k].abs());
-                let part: Vec<usize> = (0..expected.len()).filter(is_changed).collect();
-                let left = self.lines.left(&part, &old, 0.0);
-                let leaves = self.lines.left(&part, &expected, best.log_scale);
-                let effect = self.possible[number].effect;
-                let is_name = [&SIGN_MISTAKE, &SWAP_MISTAKE].contains(&effect) && best.relabelling.body == 0;
-                let most = if is_name { LEFT_BY_NAME } else { LEFT_BY_FACTOR };
-                let change =
-                    |k: &usize| ((expected[*k] - old[*k]) * self.lines.lines[*k].largest_load).powi(2);
-                let rms = (part.iter().map(change).sum::<f64>() / part.len().max(1) as f64).sqrt();
-                let leaves = leaves + self.lines.scattered(&part, &expected, best.log_scale);
-                // walls and lengths are off by a third in many a file: a unit is more than that
-                let is_key = effect == &UNIT_MISTAKE && best.relabelling.body != before.relabelling.body;
-                let least = if is_key { FAR_OFF } else { IMPLAUSIBLE };
-                (left > least && leaves < most && leaves < CURED * left, rms)
-            }
-        };
-        if !(cured && log_odds > ODDS) {
-            return None;
-        }
-        let with = |other: usize| {
-            let mut mistakes = rest.clone();
-            mistakes.push(other);
-            mistakes.sort_unstable();
-            self.combination(mistakes).map(|own| (other, best.score - own.score))
-        };
-        let is_other = |other: &usize| *other != number && !rest.contains(other);
-        let mut rivals: Vec<(usize, f64)> =
-            (0..self.possible.len()).filter(is_other).filter_map(with).collect();
-        rivals.retain(|(_, log_odds)| *log_odds < ALIKE);
-        rivals.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let rivals = rivals.into_iter().map(|(other, log_odds)| (other, log_odds.exp())).collect();
-        debug_assert_eq!(self.possible[number].effect.kind, Kind::Mistake);
-        Some(NamedMistake { number, log_odds, rivals, log_scale_before: before.log_scale, explains })
+        likeliest.into_iter().find_map(|combination| self.needed(combination))
     }
 
     fn without(&self, mistakes: &[usize]) -> Option<Combination> {

@@ -8,6 +8,7 @@ use crate::beam::Physics;
 use crate::compliance::{Compliance, DEFAULT_ELEMENTS};
 use crate::diagnosis::rig::effects::registry;
 use crate::diagnosis::rig::laws::written::written;
+use crate::diagnosis::rig::mistakes::is_unknown_unit;
 use crate::diagnosis::rig::model::nominal::KnownNumber;
 use crate::diagnosis::rig::model::{RigDiagnosis, RigModel};
 use crate::error::Result;
@@ -46,12 +47,16 @@ pub struct Correction {
 }
 
 impl RigDiagnosis {
-    /// Rod and readings as corrected; `None` without a rod, or where nothing was
-    /// found and no number of the rod's file moved.
+    /// Rod and readings as corrected; `None` without a rod, where nothing was found and no number of
+    /// the rod's file moved, or where only the rod itself says what unit the readings have: its
+    /// compliance by such readings would be the file's own.
     ///
     /// # Errors
     /// What the beam model refuses of the corrected rod.
     pub fn correction(&self) -> Result<Option<Correction>> {
+        if self.unit_is_unknown() {
+            return Ok(None);
+        }
         let proposed = self.law.as_ref().and_then(|proposed| proposed.law.as_ref().ok());
         match self.model.rod() {
             Some(rod) => {
@@ -69,6 +74,11 @@ impl RigDiagnosis {
             }
             None => Ok(None),
         }
+    }
+
+    /// True where a factor on the readings was found that is no unit's.
+    pub fn unit_is_unknown(&self) -> bool {
+        self.diagnosis.findings.iter().any(is_unknown_unit)
     }
 
     /// Where `--apply` writes a law: into the rod file where that knows its variable, or out of

@@ -55,6 +55,9 @@ const RADIANS: OtherUnit = OtherUnit {
     holds: Holds::Unit("radians", "degrees"),
     log_prior: 0.0,
 };
+/// How usual it is that of the diameters in one file the outer ones alone, or the inner ones, are
+/// in another unit: ln.
+const EITHER_DIAMETER: f64 = -2.0;
 /// A key is right more often than a column: ln.
 pub(super) const KEY: f64 = -0.5;
 
@@ -184,6 +187,8 @@ fn diameters_in_other_units(rod: &Rod) -> Vec<Meant> {
                 if outer != inner && [&rod.pipe1, &rod.pipe2].iter().any(|pipe| is_solid(pipe)) {
                     continue;
                 }
+                let rarer = if outer == inner { 0.0 } else { EITHER_DIAMETER };
+                let unit = OtherUnit { log_prior: unit.log_prior + rarer, ..unit };
                 let rescaled = |pipe: &Pipe| {
                     let mut pipe = pipe.clone();
                     if let Section::Round(round) = &mut pipe.section {

@@ -4,13 +4,16 @@ use crate::rod::{Pipe, Rod};
 use crate::section::Section;
 use crate::units::{GPA, MM};
 
+/// Nobody drills a bore that is less than this share of the outside through a rod.
+const BORE: f64 = 0.02;
+
 /// What a rod file would allow, and a workshop could make: a file that is corrected holds a real
 /// rod.
 pub(super) fn is_possible(rod: &Rod) -> bool {
     let is_section = |section: &Section| match section {
         Section::Round(round) => {
             (1.0 * MM..300.0 * MM).contains(&round.outer_diameter)
-                && round.inner_diameter >= 0.0
+                && (round.inner_diameter == 0.0 || round.inner_diameter > BORE * round.outer_diameter)
                 && round.wall() > 0.05 * MM
         }
         _ => true,

@@ -32,6 +32,8 @@ pub struct RigHeader {
     pub load_scale: f64,
     /// Relative standard uncertainty of the scale of each sensor, dimensionless; 0 is exact.
     pub sensor_scale: f64,
+    /// Channels whose scale is known from their own readings only.
+    pub(crate) has_unknown_scale: [bool; 3],
 }
 
 /// What a rig sets; the other is what it measures.
@@ -53,6 +55,7 @@ impl Default for RigHeader {
             load_noise: None,
             load_scale: 0.001,
             sensor_scale: 0.001,
+            has_unknown_scale: [false; 3],
         }
     }
 }
@@ -219,7 +222,7 @@ mod tests {
              # load_scale_percent = 0\n# sensor_scale_percent = 0.25\n# rod = 5#, x = y\n",
         )
         .unwrap();
-        let RigHeader { driven, noise, load_noise, load_scale, sensor_scale } = readings.header;
+        let RigHeader { driven, noise, load_noise, load_scale, sensor_scale, .. } = readings.header;
         assert_eq!(load_noise, None);
         assert_eq!((driven, load_scale, sensor_scale), (Driven::Displacement, 0.0, 0.0025));
         assert_eq!(noise, Some(1.5 * UM));
@@ -284,6 +287,7 @@ mod tests {
             load_noise: Some(0.02),
             load_scale: 0.0,
             sensor_scale: 0.35 * PERCENT,
+            ..RigHeader::default()
         };
         let readings = header_of("# made\n").unwrap().with_header(header).unwrap();
         let again = Readings::from_text("f", &readings.to_csv(&["made again".into()])).unwrap();

@@ -88,6 +88,9 @@ impl Mended {
         let Some((best, found)) = search.found() else { return Ok(()) };
         for one in found {
             self.add_mistake(&possible, &one);
+            for channel in possible[one.number].channels_of_unknown_unit() {
+                self.readings.header.has_unknown_scale[best.relabelling.channel[channel]] = true;
+            }
         }
         if best.relabelling.body > 0 {
             self.others.clear();

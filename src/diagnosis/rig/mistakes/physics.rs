@@ -162,10 +162,20 @@ impl Seen<'_> {
         (0..self.lines.len()).map(|k| self.slope(k, &self.physics.compliance)).collect()
     }
 
-    /// Ln of the factor that the lines of some channels have in common, measured over expected.
+    /// Ln of the factor that the lines of some channels have in common, measured over expected: of
+    /// those within 2 of their median, the one that leaves the least.
     pub fn log_scale_of(&self, channels: &[Axis]) -> f64 {
-        let counts = |line: &Line| f64::from(u8::from(channels.contains(&line.channel)));
-        self.log_scale(&self.expected(), counts).0
+        let is_its = |line: &Line| channels.contains(&line.channel);
+        let expected = self.expected();
+        let (median, _) = self.log_scale(&expected, |line| f64::from(u8::from(is_its(line))));
+        let (mut measured, mut squares) = (0.0, 0.0);
+        for (line, expected) in self.lines.iter().zip(&expected).filter(|(line, _)| is_its(line)) {
+            if ((line.fit.slope / expected).abs().ln() - median).abs() < NEAR {
+                measured += line.largest_load.powi(2) * (line.fit.slope * expected).abs();
+                squares += (line.largest_load * expected).powi(2);
+            }
+        }
+        if squares > 0.0 { (measured / squares).ln() } else { median }
     }
 
     fn slope(&self, line: usize, parts: &[Matrix3<f64>]) -> f64 {

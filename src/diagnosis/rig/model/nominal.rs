@@ -21,6 +21,9 @@ use crate::rod::{NominalNumber, Rod};
 use crate::spatial::Axis;
 use crate::units::{MM, PERCENT};
 
+/// Standard uncertainty of a scale that the readings themselves gave.
+const UNKNOWN_SCALE: f64 = 0.1;
+
 /// What a number that is known to a standard uncertainty is.
 #[derive(Debug, Clone, PartialEq)]
 pub enum KnownNumber {
@@ -96,10 +99,14 @@ pub fn all(
         value: 1.0,
         standard_uncertainty,
     };
-    let (loads, sensors) = (header.load_scale, header.sensor_scale);
+    let loads = header.load_scale;
     let column = deflections.iter().map(|bent| loads * bent).collect();
     add(KnownNumber::LoadScale, scale("scale of the loads".into(), loads), column);
     for channel in Axis::ALL {
+        let sensors = match header.has_unknown_scale[channel.index()] {
+            true => UNKNOWN_SCALE,
+            false => header.sensor_scale,
+        };
         let of_channel = |(d, bent): (&Datum, &f64)| if d.channel == channel { sensors * bent } else { 0.0 };
         let parameter = scale(format!("scale of sensor d{channel}"), sensors);
         let column = data.iter().zip(&deflections).map(of_channel).collect();

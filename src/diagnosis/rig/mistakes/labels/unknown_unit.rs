@@ -7,7 +7,7 @@ use crate::diagnosis::rig::effects::mistakes::UNIT_MISTAKE;
 use crate::diagnosis::rig::mistakes::possible::PossibleMistake;
 use crate::diagnosis::rig::mistakes::relabelling::Relabelling;
 use crate::diagnosis::rig::recording::columns::{columns, load_column};
-use crate::inference::{Estimate, Finding, Key};
+use crate::inference::{Effect, Estimate, Finding, Key};
 use crate::spatial::Axis;
 use crate::units::significant;
 
@@ -18,6 +18,8 @@ const ANY_FACTOR: f64 = -6.3;
 /// A rod whose stiffness alone is so far from its file's may have other walls, or be of another
 /// material: farther, a unit is looked for.
 pub(in crate::diagnosis::rig::mistakes) const BEYOND_A_ROD: f64 = 3.0;
+/// And a sensor among others may be this far off its scale, at most.
+const BEYOND_A_SENSOR: f64 = 2.0;
 
 /// One factor on the readings of all channels, or of one, that is none of a unit's; `log_scale`
 /// says what the lines of some channels have in common, measured over expected: ln.
@@ -32,7 +34,9 @@ pub(in crate::diagnosis::rig::mistakes) fn unknown_units(
 }
 
 fn unknown_unit(labels: &Labels, channels: &[Axis], log_scale: f64) -> Option<PossibleMistake> {
-    if log_scale.abs() < BEYOND_A_ROD.ln() {
+    let is_one_of_several = channels.len() < labels.channels.len();
+    let beyond = if is_one_of_several { BEYOND_A_SENSOR } else { BEYOND_A_ROD };
+    if log_scale.abs() < beyond.ln() {
         return None;
     }
     let names = columns(channels);
@@ -40,9 +44,9 @@ fn unknown_unit(labels: &Labels, channels: &[Axis], log_scale: f64) -> Option<Po
     let size = if log_scale < 0.0 { "small" } else { "large" };
     let [is, looks] = if channels.len() == 1 { ["is", "looks"] } else { ["are", "look"] };
     // one channel's says nothing of the loads
-    let and_loads = match channels.len() == labels.channels.len() {
-        true => format!(" and of {}", load_column(labels.load_column)),
-        false => String::new(),
+    let and_loads = match is_one_of_several {
+        true => String::new(),
+        false => format!(" and of {}", load_column(labels.load_column)),
     };
     Some(PossibleMistake {
         effect: &UNIT_MISTAKE,
@@ -61,7 +65,19 @@ fn unknown_unit(labels: &Labels, channels: &[Axis], log_scale: f64) -> Option<Po
     })
 }
 
+impl PossibleMistake {
+    /// The channels whose scale this only knows from their own readings.
+    pub fn channels_of_unknown_unit(&self) -> impl Iterator<Item = usize> {
+        let is_unknown = is_unknown(self.effect, &self.estimates);
+        (0..3).filter(move |&channel| is_unknown && self.relabelling.reading[0][channel] != 1.0)
+    }
+}
+
 /// True for a factor that only the rod itself says: of no unit that has a name.
 pub fn is_unknown_unit(finding: &Finding) -> bool {
-    *finding.effect == UNIT_MISTAKE && finding.estimates.iter().any(|factor| factor.low < factor.high)
+    is_unknown(finding.effect, &finding.estimates)
+}
+
+fn is_unknown(effect: &Effect, estimates: &[Estimate]) -> bool {
+    *effect == UNIT_MISTAKE && estimates.iter().any(|factor| factor.low < factor.high)
 }

@@ -13,6 +13,8 @@ const SINGLE_JOINT: f64 = 0.6;
 const SINGLE_SHEAR: f64 = 1.0;
 const SINGLE_AXIS: f64 = 0.3;
 const SINGLE_CHANNEL: f64 = 0.3;
+/// A sensor, or loads, of a smaller scale are in another unit.
+const LEAST_SCALE: f64 = 0.5;
 const SINGLE_TURN: f64 = 0.09;
 /// A point of loads or sensors, as a share of the rod's length.
 pub(super) const SINGLE_POINT: f64 = 0.05;
@@ -36,13 +38,12 @@ impl Solved {
         let both = columns.joints_both_ways();
         let both = both.iter().filter_map(|joint| softer(joint, SINGLE_JOINT, ONE_JOINT));
         let shear = softer(&columns.shear, SINGLE_SHEAR, SINGLE);
-        let either = [
-            (&columns.axes, SINGLE_AXIS),
-            (&columns.channels, SINGLE_CHANNEL),
-            (&columns.turns, SINGLE_TURN),
-            (&columns.points, 1.0),
-        ];
+        let scales = [(&columns.axes, SINGLE_AXIS), (&columns.channels, SINGLE_CHANNEL)];
+        let scales = scales.into_iter().flat_map(|(columns, size)| columns.iter().map(move |c| (c, size)));
+        let scales = scales.filter(|(column, size)| self.size_of(column, *size) > LEAST_SCALE - 1.0);
+        let either = [(&columns.turns, SINGLE_TURN), (&columns.points, 1.0)];
         let either = either.into_iter().flat_map(|(columns, size)| columns.iter().map(move |c| (c, size)));
+        let either = scales.chain(either);
         let either = either.filter_map(|(column, size)| Some(SINGLE + self.with(column, size)?));
         joints.chain(both).chain(shear).chain(either).collect()
     }
@@ -58,6 +59,12 @@ impl Solved {
     /// With a part that gives way; `None` where it would do so by less than nothing.
     fn softer(&self, column: &DVector<f64>, size: f64) -> Option<f64> {
         if column.dot(&self.solved) > 0.0 { self.with(column, size) } else { None }
+    }
+
+    /// How much of a column there is, where its size is normal about none.
+    fn size_of(&self, column: &DVector<f64>, size: f64) -> f64 {
+        let own = self.root.l_dirty().solve_lower_triangular(column).map_or(0.0, |c| c.norm_squared());
+        size * size * column.dot(&self.solved) / (1.0 + size * size * own)
     }
 
     /// With a column of a size that is normal about none: by the Sherman–Morrison formula.

@@ -94,16 +94,17 @@ impl MistakeSearch<'_> {
             |&k: &usize| (expected[k] - old[k]).abs() > 0.1 * expected[k].abs().max(old[k].abs());
         let part: Vec<usize> = (0..expected.len()).filter(is_changed).collect();
         let left = self.lines.left(&part, &old, 0.0);
-        let leaves = self.lines.left(&part, &expected, own.log_scale)
-            + self.lines.scattered(&part, &expected, own.log_scale);
+        let off = self.lines.left(&part, &expected, own.log_scale);
+        let leaves = off + self.lines.scattered(&part, &expected, own.log_scale);
         let effect = self.possible[number].effect;
         let is_name = [&SIGN_MISTAKE, &SWAP_MISTAKE].contains(&effect) && own.relabelling.body == 0;
-        let most = if is_name { LEFT_BY_NAME } else { LEFT_BY_FACTOR };
+        // a sign is the same one in readings that scatter
+        let is_right = if is_name { off < LEFT_BY_NAME } else { leaves < LEFT_BY_FACTOR };
         // walls and lengths are off by a third in many a file: a unit is more than that
         let is_key = effect == &UNIT_MISTAKE && own.relabelling.body != before.relabelling.body;
         let least = if is_key { FAR_OFF } else { IMPLAUSIBLE };
         let change = |k: &usize| ((expected[*k] - old[*k]) * self.lines.lines[*k].largest_load).powi(2);
         let rms = (part.iter().map(change).sum::<f64>() / part.len().max(1) as f64).sqrt();
-        (left > least && leaves < most && leaves < CURED * left).then_some(rms)
+        (left > least && is_right && leaves < CURED * left).then_some(rms)
     }
 }

@@ -33,6 +33,24 @@ fn a_diagnosis_names_the_mistake_first_and_writes_the_corrected_file() {
     assert!(lines[0].description.starts_with("load_n looks like kilograms: the rod seems 9."), "{lines:?}");
 }
 
+/// What the rod itself says of a unit says nothing of the rod: no other scale of a sensor follows
+/// from it, no number of the file, and nothing is written.
+#[test]
+fn a_unit_that_nobody_knows_is_looked_up() {
+    let file = rod(ROD_5);
+    for channels in [&[Axis::Z][..], &Axis::ALL] {
+        let mut wrong = all_scaled(&recorded(&file, Bench::Full, 5), 1.02);
+        channels.iter().for_each(|&channel| scaled(&mut wrong, channel, 1.0 / 40.0));
+        let found = crate::diagnosis::rig::diagnose(&wrong, Some(&file)).unwrap();
+        let names: Vec<&str> = found.diagnosis.findings.iter().map(|found| found.effect.name).collect();
+        assert_eq!(names, ["unit_mistake"], "{channels:?}");
+        let factor = found.diagnosis.findings[0].quantity("factor").unwrap();
+        assert!((factor.low..factor.high).contains(&40.0), "{factor:?}");
+        assert!(found.diagnosis.discrepancy.is_none() && found.diagnosis.nominal.is_empty());
+        assert!(found.unit_is_unknown() && found.correction().unwrap().is_none());
+    }
+}
+
 /// Pounds for kilograms, and pounds of force where sensors along the loads see one factor only, are
 /// what a stiffer rod would read: named as a rival, and looked up before anything is measured.
 #[test]

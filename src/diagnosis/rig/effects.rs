@@ -16,6 +16,7 @@ pub(super) mod events;
 pub(super) mod history;
 pub(super) mod load;
 pub mod mistakes;
+pub(super) mod of_trial;
 pub(super) mod pipe;
 pub(super) mod places;
 pub(super) mod points;

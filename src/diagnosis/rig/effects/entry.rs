@@ -8,6 +8,7 @@ use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{
     Candidate, Effect, Finding, Location, Parameter, Quantity, Term, Variable, WrittenTo,
 };
+use crate::rig::readings::LoadColumn;
 use crate::rod::Rod;
 use crate::units::{DEG, Unit};
 
@@ -55,6 +56,8 @@ impl fmt::Display for Usual {
 /// What effects see of readings.
 pub(in crate::diagnosis::rig) struct Context<'a> {
     pub data: &'a [Datum],
+    /// The column that the loads stand in.
+    pub load_column: LoadColumn,
     pub body: &'a mut Body,
     pub rod: Option<&'a Rod>,
     /// How many times as stiff as its file the rod is at first sight; 1 unless far off.

@@ -102,9 +102,10 @@ pub static COPY_MISTAKE: Effect = Effect {
 /// A zero that was not taken.
 pub const OFFSET_MISTAKE: Effect = Effect {
     name: "offset_mistake",
-    summary: "a zero was not taken: a constant on all readings of a channel or of a run",
-    formula: "true = recorded − constant, beyond the rod's own deflection",
-    parameters: &[(&["um"], "the constant")],
+    summary: "a zero was not taken: a constant on all readings of a channel or of a run; or a hanger was not \
+        counted in one trial",
+    formula: "true = recorded − constant; of loads: true = recorded + constant",
+    parameters: &[(&["um"], "the constant"), (&["n"], "what hung more than written")],
     cause: "a zero that was not taken",
     cause_at: |location| at("a zero that was not taken", location),
     ..NONE

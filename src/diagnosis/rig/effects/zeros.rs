@@ -4,8 +4,11 @@
 //! What is larger than the rod's own deflection is undone before there is a model:
 //! `diagnosis/rig/mistakes`.
 
-use super::entry::{Context, Entry, RigEffect, UNBOUNDED, entry, number, out_of_the_readings, parameter};
+use super::entry::{
+    Context, Entry, RigEffect, UNBOUNDED, entry, number, out_of_the_readings, parameter, size,
+};
 use super::mistakes::OFFSET_MISTAKE;
+use super::of_trial::of_trials;
 use super::places::{measured_channels, runs_by_sensor};
 use crate::diagnosis::rig::mechanics::action::{Action, Weights};
 use crate::diagnosis::rig::recording::columns::{column, sensor_in_run};
@@ -13,12 +16,14 @@ use crate::inference::{Key, Location};
 
 /// Usual size as a share of the largest reading.
 const ZERO: f64 = 0.1;
+/// Usual weight of a hanger as a share of the largest load.
+const HANGER: f64 = 0.1;
 /// Of so many runs each may have a zero of its own that was not taken; of more nobody looks.
 const MOST_RUNS: usize = 200;
 /// Of fewer runs along an axis nobody knows which of them is off.
 const FEWEST_RUNS: usize = 3;
 
-/// A constant on all readings of a channel, or of a channel in a run.
+/// A constant on all readings of a channel, or of a channel in a run, or on the loads of a trial.
 pub static ZERO_NOT_TAKEN: RigEffect = RigEffect {
     effect: OFFSET_MISTAKE,
     usual: &[],
@@ -26,6 +31,14 @@ pub static ZERO_NOT_TAKEN: RigEffect = RigEffect {
     candidates: offsets,
     missing: |_| "nothing was read",
     observed: |finding, _| {
+        if finding.quantity("n").is_some() {
+            let (more, force) = (number(finding, "n").value > 0.0, size(finding, "n", "N"));
+            let [differ, cure] = if more { ["larger", "add"] } else { ["smaller", "subtract"] };
+            return format!(
+                "The loads are {force} {differ} than written ({}), as with a hanger that was not counted: {cure} that",
+                finding.location
+            );
+        }
         let zero = number(finding, "um").with_unit("µm");
         format!("A zero was not taken ({}): subtract {zero} from these readings", finding.location)
     },
@@ -46,6 +59,11 @@ fn offsets(context: &mut Context) -> Vec<Entry> {
     };
     let mut entries: Vec<Entry> = measured_channels(data).into_iter().map(of_channel).collect();
     let runs = runs_by_sensor(data);
+    let largest = context.largest_load();
+    entries.extend(of_trials(data, context.load_column, |place, per_newton| {
+        let n = parameter("n", 0.0, HANGER * largest, (-largest, largest));
+        entry(&ZERO_NOT_TAKEN, Location::from(place), n, Action::Shift(per_newton))
+    }));
     if runs.len() > MOST_RUNS {
         return entries;
     }

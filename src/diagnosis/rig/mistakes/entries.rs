@@ -9,8 +9,9 @@
 //! s, a and σ slope, zero and scatter of the line of each channel. Where that is far from the load
 //! in the file, two channels or more contradict the file and all agree with it, the load is wrong
 //! and not a reading; a single channel is a suspect reading like any other, but where the load in
-//! the file is in no other row and the one that it shows is. Which number was
-//! meant: another load of the recording, its digits exchanged, or its decimal point elsewhere.
+//! the file is in no other row and the one that it shows is, or where two rows of a run show each
+//! other's loads. Which number was meant: another load of the recording, its digits exchanged, or
+//! its decimal point elsewhere.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -77,9 +78,24 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
         LoadColumn::Newtons => 1.0,
         LoadColumn::Kilograms => STANDARD_GRAVITY,
     };
+    let shown = |own: &'_ Vec<usize>| load_by_readings(data, lines, &line_of, own);
+    let shown: Vec<(&Vec<usize>, LoadByReadings)> =
+        instants.values().filter_map(|own| Some((own, shown(own)?))).collect();
+    // the weights of two rows of a run hung in the wrong order: each shows the other one's load
+    let is_exchanged = |own: &[usize], load: f64| {
+        let datum = &data[own[0]];
+        shown.iter().any(|(other, by_readings)| {
+            let other = &data[other[0]];
+            let is_near = |a: f64, b: f64| (a - b).abs() < NEAR * b.abs();
+            other.run == datum.run
+                && other.order != datum.order
+                && other.load != datum.load
+                && is_near(load, other.signed_load())
+                && is_near(by_readings.load, datum.signed_load())
+        })
+    };
     let mut found = Vec::new();
-    for own in instants.values() {
-        let Some(shown) = load_by_readings(data, lines, &line_of, own) else { continue };
+    for (own, shown) in &shown {
         let datum = &data[own[0]];
         let row = datum.row;
         let apart = (shown.load - datum.signed_load()).abs();
@@ -98,13 +114,14 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
             meant.into_iter().map(|load| load * in_file).filter(|load| (load - along).abs() < tolerance);
         let meant = meant.min_by(|a, b| (a - along).abs().total_cmp(&(b - along).abs()));
         // one channel alone may be misread, but for a load that nobody else hung where it shows one
-        // that was hung elsewhere
+        // that was hung elsewhere, or for two rows that show each other's loads
         let is_elsewhere = |load: f64| {
             let is_same = |d: &&Datum| d.order != datum.order && (d.load - load).abs() < 1e-6 * usual;
             data.iter().any(|d| is_same(&d))
         };
         let is_alone = shown.against[1] < AGREE;
-        if is_alone && (is_elsewhere(datum.load) || !meant.is_some_and(is_elsewhere)) {
+        let is_known = !is_elsewhere(datum.load) && meant.is_some_and(is_elsewhere);
+        if is_alone && !is_known && !is_exchanged(own, shown.load) {
             continue;
         }
         let name = load_column(unit);
@@ -139,13 +156,24 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
                     }
                 }],
                 explains: apart * most_slope(lines, &line_of, own),
-                data: own.clone(),
+                data: own.to_vec(),
                 rivals: Vec::new(),
             },
             rows: own.iter().map(|&i| data[i].row - 1).collect(),
             load: meant,
         });
     }
+    // what most rows of a load show is no slip of the pen
+    let alike = |a: &Datum, b: &Datum| a.direction == b.direction && a.load == b.load;
+    let first = |entry: &Entry| &data[entry.part.data[0]];
+    let repeats = |entry: &Entry| {
+        let rows = instants.values().filter(|own| alike(&data[own[0]], first(entry))).count();
+        let wrong = found.iter().filter(|other| alike(first(other), first(entry))).count();
+        wrong > 1 && 2 * wrong > rows
+    };
+    let repeated: Vec<bool> = found.iter().map(repeats).collect();
+    let mut repeated = repeated.into_iter();
+    found.retain(|_| !repeated.next().unwrap_or_default());
     if found.len() as f64 > (FEW * instants.len() as f64).max(1.0) { Vec::new() } else { found }
 }
 

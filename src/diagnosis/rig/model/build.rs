@@ -176,6 +176,7 @@ impl RigModel {
         let stiffness = first_sight::stiffness(&self.data);
         let at_first_sight = first_sight::ratio(&self.data);
         let mut context = Context {
+            load_column: self.readings.load_column,
             data: &self.data,
             body: &mut self.body,
             rod: self.rod.as_ref(),

@@ -33,6 +33,32 @@ fn a_diagnosis_names_the_mistake_first_and_writes_the_corrected_file() {
     assert!(lines[0].description.starts_with("load_n looks like kilograms: the rod seems 9."), "{lines:?}");
 }
 
+/// A hanger that nobody counted in one trial is one number, not a zero of each sensor.
+#[test]
+fn loads_of_one_trial_that_were_larger_than_written_are_one_mistake() {
+    let file = rod(ROD_5);
+    let hung = |more: f64| {
+        let mut rows = rows(Bench::Full);
+        let of_trial = |row: &&mut Reading| row.trial.as_deref() == Some("2");
+        rows.iter_mut().filter(of_trial).for_each(|row| row.load += more);
+        let mut readings = read(&file, rows, 7);
+        readings.rows.iter_mut().filter(of_trial).for_each(|row| row.load -= more);
+        crate::diagnosis::rig::diagnose(&readings, Some(&file)).unwrap().diagnosis.findings
+    };
+    let found = hung(1.5);
+    let names: Vec<String> =
+        found.iter().map(|found| format!("{} {}", found.effect, found.location)).collect();
+    assert_eq!(names, ["offset_mistake load_n, trial 2"]);
+    let n = found[0].quantity("n").unwrap();
+    assert!((n.low..n.high).contains(&1.5), "{n:?}");
+    assert!(
+        found[0].description.observed.ends_with("was not counted: add that"),
+        "{:?}",
+        found[0].description
+    );
+    assert!(hung(0.0).is_empty());
+}
+
 /// What the rod itself says of a unit says nothing of the rod: no other scale of a sensor follows
 /// from it, no number of the file, and nothing is written.
 #[test]

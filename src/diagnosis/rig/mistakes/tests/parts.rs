@@ -273,6 +273,46 @@ fn a_load_that_was_typed_wrongly_is_corrected() {
     assert_eq!(found(&misread, Some(&file)), [""; 0]);
 }
 
+/// A weight that is heavier than it says, or a rod that jumps at a load, does so in every run.
+#[test]
+fn what_every_run_shows_of_a_load_is_no_slip_of_the_pen() {
+    let file = rod(ROD_5);
+    let clean = recorded(&file, Bench::Full, 7);
+    let with = |trials: &[&str]| {
+        let mut wrong = clean.clone();
+        for row in wrong.rows.iter_mut().filter(|row| (row.direction.axis, row.load) == (Axis::Z, 15.0)) {
+            if row.trial.as_deref().is_some_and(|trial| trials.contains(&trial)) {
+                row.offset = row.offset.map(|y| y.map(|y| 1.4 * y));
+            }
+        }
+        found(&wrong, Some(&file)).len()
+    };
+    assert_eq!([with(&["2"]), with(&["1", "2", "3"])], [1, 0]);
+}
+
+/// Two weights in the wrong order: each of the two rows makes the line follow it, so that the other
+/// one may not be seen beside it.
+#[test]
+fn two_loads_that_were_hung_in_the_wrong_order_are_both_corrected() {
+    let file = rod(ROD_5);
+    let mut cases = Cases::default();
+    for seed in 0..12 {
+        let clean = recorded(&file, Bench::Full, seed);
+        let of_load = |load: f64| {
+            let is_it = |row: &Reading| {
+                (row.direction.axis, row.trial.as_deref(), row.load) == (Axis::Z, Some("2"), load)
+            };
+            clean.rows.iter().position(is_it).unwrap()
+        };
+        let (a, b) = (of_load(10.0), of_load(20.0));
+        let mut wrong = clean.clone();
+        (wrong.rows[a].load, wrong.rows[b].load) = (20.0, 10.0);
+        let [a, b] = [a, b].map(|row| format!("typing_mistake load_n, row {}", row + 1));
+        cases.expect(&seed.to_string(), &wrong, &file, &[&a, &b]);
+    }
+    cases.check();
+}
+
 /// Where a single channel is read, a load that no other row has was typed wrongly if it shows one
 /// that others have; one that others have is as likely a misread value.
 #[test]

@@ -18,7 +18,8 @@ pub fn without_laws(readings: &Readings, rod: &Rod, physics: &Physics, elements:
     let mut without = readings.clone();
     let tip = rod.length();
     let at = |station: Option<f64>| station.unwrap_or(tip).min(tip);
-    let mut known: Vec<((f64, f64), Matrix3<f64>, StaticLaws)> = Vec::new();
+    // between the two stations, and where the load acts
+    let mut known: Vec<((f64, f64), [Matrix3<f64>; 2], StaticLaws)> = Vec::new();
     for row in &mut without.rows {
         for channel in Axis::ALL {
             let laws = rod.laws.iter().filter(|law| is_read_by(law, channel));
@@ -31,14 +32,15 @@ pub fn without_laws(readings: &Readings, rod: &Rod, physics: &Physics, elements:
             Some(place) => place,
             None => {
                 let model = RodModel::new(rod, physics, elements, &[pair.0, pair.1])?;
-                let compliance = model.force_response(pair.0, pair.1)?.translation;
-                known.push((pair, compliance, StaticLaws::between(rod, pair.0, pair.1)));
+                let between = model.force_response(pair.0, pair.1)?.translation;
+                let at_load = model.force_response(pair.0, pair.0)?.translation;
+                known.push((pair, [between, at_load], StaticLaws::between(rod, pair.0, pair.1)));
                 known.len() - 1
             }
         };
-        let (_, compliance, laws) = &known[place];
+        let (_, [between, at_load], laws) = &known[place];
         let force = Vector3::ith(row.direction.axis.index(), f64::from(row.direction.sign) * row.load);
-        let more = laws.displacement(compliance, &force, &Vector3::zeros());
+        let more = laws.displacement_between([between, at_load], &force, &Vector3::zeros());
         for (offset, more) in row.offset.iter_mut().zip(more.iter()) {
             *offset = offset.map(|offset| offset - more);
         }

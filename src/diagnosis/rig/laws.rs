@@ -1,6 +1,7 @@
-//! Laws as formulas: where they may act ([`sites`]), those of the rod's file ([`of_rod_file`]), a
+//! Laws as formulas: where they may act ([`sites`], of loads and [`deflected`] rods), those of the rod's file ([`of_rod_file`]), a
 //! proposed one as a file holds it ([`written`]), and what textbooks say of it.
 
+pub mod deflected;
 pub mod measures;
 pub mod of_rod_file;
 pub mod remembered;

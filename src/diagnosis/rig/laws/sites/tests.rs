@@ -127,6 +127,41 @@ fn the_library_is_a_part_of_the_grammar() {
     assert_eq!(known, registry::ALL.iter().map(|own| own.effect.name).collect());
 }
 
+/// What they are where the displacement is imposed, and the load is what changes.
+const POINTS_IMPOSED: [(&str, &str, &str, Form, bool); 8] = [
+    ("stiffness_scale", "rod", "deflection along the load", Form::Polynomial(1), false),
+    ("nonlinear_stiffness", "rod", "deflection along the load", Form::Polynomial(3), false),
+    ("friction", "rod", "deflection along the load", Form::Step, true),
+    ("root_compliance", "root", "moment", Form::Polynomial(1), false),
+    ("joint_compliance", "sleeve", "moment", Form::Polynomial(1), false),
+    ("creep", "rod", "time since the load was changed", Form::Logarithm, false),
+    ("thermal_softening", "rod", "temperature above the lowest", Form::Polynomial(1), false),
+    ("thermal_drift", "sensors", "temperature above the lowest", Form::Polynomial(1), false),
+];
+
+#[test]
+fn an_imposed_displacement_has_the_same_grammar() {
+    let (hung, rod) = up_and_down();
+    let text = hung.to_csv(&[]);
+    let readings = Readings::from_text("f", &format!("# driven = \"displacement\"\n{text}")).unwrap();
+    let (model, _) = RigModel::new(&readings, Some(&rod)).unwrap();
+    let all = sites(&model, &DVector::zeros(model.data.len()));
+    let waits = |site: &Site| [1.0, 10.0, 60.0, 600.0].map(|t0| t0 / site.largest());
+    for (effect, place, variable, form, sides) in POINTS_IMPOSED {
+        let point = GrammarPoint { place, variable, form, sides };
+        let constants: Vec<f64> = match form {
+            Form::Step => vec![0.0],
+            _ => all.iter().filter(|site| site.variable.name == variable).flat_map(waits).collect(),
+        };
+        let own = model.candidates.iter().enumerate().filter(|(_, own)| own.effect.name == effect);
+        let most = own
+            .map(|(index, own)| model.columns(&[own.neutral(index)], 0))
+            .map(|columns| likeness(&all, point, &constants, &columns))
+            .fold(0.0, f64::max);
+        assert!(most > 1.0 - 1e-6, "{effect}, {place} over {variable}: {most}");
+    }
+}
+
 const JOINT: &str = "
 [[joint]]
 name = \"sleeve\"

@@ -107,7 +107,12 @@ fn a_law_of_the_deflection_holds_for_weights_too() {
         let fit = rodcal::rig::fit(&readings, Some(&rod), &rodcal::rig::Options::default()).unwrap();
         fit.measured.unwrap().rod_ratio.value
     };
-    assert!((ratio(&rod) - 1.0).abs() < 0.02 && (ratio(ROD) - 1.0).abs() > 0.05, "{} {}", ratio(&rod), ratio(ROD));
+    assert!(
+        (ratio(&rod) - 1.0).abs() < 0.02 && (ratio(ROD) - 1.0).abs() > 0.05,
+        "{} {}",
+        ratio(&rod),
+        ratio(ROD)
+    );
 }
 
 /// Two contacts that slip after 0.3 and 1.2 mm (Prandtl and Ishlinskii), written and read again.
@@ -157,7 +162,11 @@ fn a_dashpot_is_a_lag_of_the_deflection() {
     let unevenly = |k: i32| [2.0, 5.0, 12.0, 30.0, 80.0][(7 * k % 5) as usize];
     let answer = Answer::of(Some(ROD), &imposed(6, unevenly, relaxing));
     let law = law(&answer);
-    assert_eq!((&law["memory"], &law["variable"]["symbol"]), (&"first-order lag".into(), &"u".into()), "{law}");
+    assert_eq!(
+        (&law["memory"], &law["variable"]["symbol"]),
+        (&"first-order lag".into(), &"u".into()),
+        "{law}"
+    );
     assert_holds(law, "tau", 25.0);
 }
 

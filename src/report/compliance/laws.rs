@@ -114,5 +114,6 @@ fn loads(study: &Study) -> Vec<f64> {
 
 fn is_beyond(study: &Study, load: f64) -> bool {
     let axes = (0..3).map(|axis| Vector3::ith(axis, load));
-    axes.into_iter().any(|force| !study.laws.beyond(&study.linear.force, &force, &Vector3::zeros()).is_empty())
+    axes.into_iter()
+        .any(|force| !study.laws.beyond(&study.linear.force, &force, &Vector3::zeros()).is_empty())
 }

@@ -5,10 +5,10 @@
 //! imposed, the load is what gives way to it:
 //!
 //! ```text
-//! u = C·F + w·g      →      c₀·F = c₀·u/C − (c₀/C)·w·g        c₀: what a newton of what was measured counts
+//! u = C·F + w·g      →      c₀·F = c₀·u/C − (c₀/C)·w·g
 //! ```
 //!
-//! so that one list of places serves both. Beside an imposed displacement other sensors show
+//! c₀ what a newton counts, see [`Imposed`](crate::diagnosis::rig::recording::datum::Imposed); so that one list of places serves both. Beside an imposed displacement other sensors show
 //! C′·F + w·g of the load that was measured, as under hung ones.
 
 use std::collections::BTreeMap;
@@ -33,6 +33,8 @@ pub struct Deflected {
     pub slope: Vec<f64>,
     /// The deflection along the load where it acts, m; NaN where nothing reads it.
     pub along: Vec<f64>,
+    /// The datum of its instant that reads it, and its sign there.
+    pub along_by: Vec<Option<(usize, f64)>>,
     /// The datum that has drive and history of its instant: itself, but beside what was imposed.
     pub driven: Vec<usize>,
     /// What was measured, per metre of deflection at the same load: 1, or −c₀/C.
@@ -54,6 +56,7 @@ impl Deflected {
             load: data.iter().map(|d| d.load).collect(),
             slope: slopes(data, &bare, change),
             along: vec![f64::NAN; data.len()],
+            along_by: vec![None; data.len()],
             driven: (0..data.len()).collect(),
             per_metre: vec![1.0; data.len()],
             is_imposed: data.iter().any(|d| d.imposed.is_some()),
@@ -105,17 +108,23 @@ impl Deflected {
 
     /// Where weights were hung: by the sensors along them, where they hang.
     fn find_along(&mut self, data: &[Datum]) {
-        let mut compliance: BTreeMap<(Axis, u64), f64> = BTreeMap::new();
-        for ((d, slope), sense) in data.iter().zip(&self.slope).zip(&self.sense) {
+        type Place = (Axis, u64);
+        let place = |d: &Datum| -> Place { (d.direction.axis, d.stations()[0]) };
+        let mut compliance: BTreeMap<Place, f64> = BTreeMap::new();
+        let mut shown: BTreeMap<(usize, usize, Place), usize> = BTreeMap::new();
+        for (i, d) in data.iter().enumerate() {
             let [load, read] = d.stations();
             if d.channel == d.direction.axis && load == read {
-                compliance.insert((d.direction.axis, load), sense * slope);
+                compliance.insert(place(d), self.sense[i] * self.slope[i]);
+                shown.insert((d.run, d.order, place(d)), i);
             }
         }
-        for ((along, d), load) in self.along.iter_mut().zip(data).zip(&self.load) {
-            if let Some(compliance) = compliance.get(&(d.direction.axis, d.stations()[0])) {
-                *along = compliance * load;
+        for (i, d) in data.iter().enumerate() {
+            if let Some(compliance) = compliance.get(&place(d)) {
+                self.along[i] = compliance * self.load[i];
             }
+            let by = shown.get(&(d.run, d.order, place(d)));
+            self.along_by[i] = by.map(|&k| (k, self.sense[k]));
         }
     }
 

@@ -125,10 +125,10 @@ fn added(
         if weights[i] == 0.0 || !followed[i].is_finite() {
             return 0.0;
         }
-        match site.recorded.as_ref().filter(|_| argument == Argument::Recorded) {
+        match site.recorded.as_ref().filter(|own| argument == Argument::Recorded && !own.with_law) {
             // y of y + Δy(y) = what was recorded
             Some(recorded) => {
-                let y = should_show(recorded[i] / si, |y| weights[i] * at(y, side) / si);
+                let y = should_show(recorded.data[i] / si, |y| weights[i] * at(y, side) / si);
                 weights[i] * at(y, side)
             }
             None => weights[i] * at(followed[i] / si, side),

@@ -19,7 +19,7 @@ use crate::diagnosis::rig::mechanics::load_history::{instants, runs};
 use crate::diagnosis::rig::model::{Body, RigModel};
 use crate::diagnosis::rig::nonparametric::Before;
 use crate::diagnosis::rig::recording::datum::Datum;
-use crate::inference::law::{Course, Form, Instant, Measure, Site};
+use crate::inference::law::{Course, Form, Instant, Measure, Recorded, Site};
 use crate::inference::{Location, Part};
 use crate::rod::{LawVariable, Rod};
 use crate::spatial::Axis;
@@ -113,7 +113,7 @@ pub fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
             variable: SiteVariable::OfFile(LawVariable::Reading).measure(),
             directions: vec![(String::new(), data.iter().map(weight).collect())],
             values: deflected.read.clone(),
-            recorded: Some(data.iter().map(|d| d.measured).collect()),
+            recorded: Some(Recorded::by_itself(data.iter().map(|d| d.measured).collect())),
             moves: Vec::new(),
             courses: Vec::new(),
             forms: OF_A_LOAD,
@@ -230,7 +230,9 @@ impl Recording<'_> {
             (slope.clone(), along.clone()),
             if self.deflected.is_imposed { OF_A_LOAD } else { OF_A_DISTANCE },
         );
-        Site { courses: self.one_by_one(), ..site }
+        let data = self.data.iter().map(|d| d.measured).collect();
+        let by = self.deflected.along_by.clone();
+        Site { courses: self.one_by_one(), recorded: Some(Recorded { data, by, with_law: true }), ..site }
     }
 
     /// Its runs; nothing where one of them goes along several axes, which have no common course.

@@ -18,6 +18,7 @@ use nalgebra::DVector;
 use crate::diagnosis::rig::model::RigModel;
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::law::Site;
+use crate::rod::Rod;
 use crate::spatial::Axis;
 
 /// One number for each datum.
@@ -64,7 +65,7 @@ impl Deflected {
         };
         match all.is_imposed {
             true => all.impose(model),
-            false => all.find_along(data),
+            false => all.find_along(model),
         }
         all
     }
@@ -107,14 +108,17 @@ impl Deflected {
     }
 
     /// Where weights were hung: by the sensors along them, where they hang.
-    fn find_along(&mut self, data: &[Datum]) {
+    fn find_along(&mut self, model: &RigModel) {
         type Place = (Axis, u64);
-        let place = |d: &Datum| -> Place { (d.direction.axis, d.stations()[0]) };
+        let data = &model.data;
+        // a station at the tip may be stated, or not
+        let tip = model.rod.as_ref().map_or(f64::INFINITY, Rod::length);
+        let station = |station: Option<f64>| station.unwrap_or(tip).min(tip).to_bits();
+        let place = |d: &Datum| -> Place { (d.direction.axis, station(d.load_station)) };
         let mut compliance: BTreeMap<Place, f64> = BTreeMap::new();
         let mut shown: BTreeMap<(usize, usize, Place), usize> = BTreeMap::new();
         for (i, d) in data.iter().enumerate() {
-            let [load, read] = d.stations();
-            if d.channel == d.direction.axis && load == read {
+            if d.channel == d.direction.axis && station(d.load_station) == station(d.read_station) {
                 compliance.insert(place(d), self.sense[i] * self.slope[i]);
                 shown.insert((d.run, d.order, place(d)), i);
             }

@@ -131,9 +131,9 @@ fn slipping() -> impl FnMut(f64, f64) -> f64 {
 fn contacts_that_slip_are_written_and_read() {
     let before = Answer::of(Some(ROD), &imposed(5, evenly, slipping));
     let law = law(&before);
-    let of = (&law["variable"]["name"], &law["memory"], &law["location"]);
+    let found = (&law["variable"]["name"], &law["memory"], &law["location"]);
     let expected = ("deflection along the load", "two stop operators", "rod");
-    assert_eq!(of, (&expected.0.into(), &expected.1.into(), &expected.2.into()), "{law}");
+    assert_eq!(found, (&expected.0.into(), &expected.1.into(), &expected.2.into()), "{law}");
     assert_holds(law, "r1", 300.0);
     assert_holds(law, "r", 1200.0);
     let correction = before.found.correction().unwrap().unwrap();

@@ -8,8 +8,9 @@
 //! u = C·F + w·g      →      c₀·F = c₀·u/C − (c₀/C)·w·g
 //! ```
 //!
-//! c₀ what a newton counts, see [`Imposed`](crate::diagnosis::rig::recording::datum::Imposed); so that one list of places serves both. Beside an imposed displacement other sensors show
-//! C′·F + w·g of the load that was measured, as under hung ones.
+//! where c₀ is what a newton of what was measured counts, so that one list of places serves both.
+//! Beside an imposed displacement other sensors show C′·F + w·g of the load that was measured, as
+//! they do under hung ones.
 
 use std::collections::BTreeMap;
 
@@ -48,7 +49,7 @@ type Line = (Axis, Axis, [u64; 2]);
 
 impl Deflected {
     /// Of a recording, given what is known to change each datum, m.
-    pub fn of(model: &RigModel, change: &DVector<f64>) -> Deflected {
+    pub fn new(model: &RigModel, change: &DVector<f64>) -> Deflected {
         let data = &model.data;
         let bare = model.deflections();
         let known: Vec<f64> = bare.iter().zip(change.iter()).map(|(u, more)| u + more).collect();

@@ -72,7 +72,7 @@ const LEAST_TURN: f64 = 1e-3;
 /// All places, given what is known to change each datum, m.
 pub fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
     let data = &model.data;
-    let deflected = Deflected::of(model, change);
+    let deflected = Deflected::new(model, change);
     let recording = Recording { data, deflected: &deflected, moves: moves(data, &deflected) };
     let newton = || (Location::Part(Part::Rod), measure("ΔF", "effective load", "N", 1.0));
     let mut sites = vec![recording.of_deflection(newton())];
@@ -311,9 +311,9 @@ impl Recording<'_> {
     fn changes(&self, before: &Before) -> Vec<f64> {
         let Deflected { slope, driven, .. } = self.deflected;
         let changes = before.changes(self.data, &self.deflected.read);
-        let beside = |(i, &of): (usize, &usize)| match of == i || slope[of] == 0.0 {
+        let beside = |(i, &own): (usize, &usize)| match own == i || slope[own] == 0.0 {
             true => changes[i],
-            false => slope[i] / slope[of] * changes[of],
+            false => slope[i] / slope[own] * changes[own],
         };
         driven.iter().enumerate().map(beside).collect()
     }

@@ -22,6 +22,9 @@ use crate::inference::law::Site;
 use crate::rod::Rod;
 use crate::spatial::Axis;
 
+/// Stations so near to each other are one, m: none is stated to a nanometre.
+const SAME: f64 = 1e-9;
+
 /// One number for each datum.
 pub struct Deflected {
     /// 1 or −1: which way along the axis of the load.
@@ -110,11 +113,11 @@ impl Deflected {
 
     /// Where weights were hung: by the sensors along them, where they hang.
     fn find_along(&mut self, model: &RigModel) {
-        type Place = (Axis, u64);
+        type Place = (Axis, i64);
         let data = &model.data;
         // a station at the tip may be stated, or not
         let tip = model.rod.as_ref().map_or(f64::INFINITY, Rod::length);
-        let station = |station: Option<f64>| station.unwrap_or(tip).min(tip).to_bits();
+        let station = |station: Option<f64>| (station.unwrap_or(tip).min(tip) / SAME).round() as i64;
         let place = |d: &Datum| -> Place { (d.direction.axis, station(d.load_station)) };
         let mut compliance: BTreeMap<Place, f64> = BTreeMap::new();
         let mut shown: BTreeMap<(usize, usize, Place), usize> = BTreeMap::new();

@@ -175,7 +175,7 @@ fn an_imposed_displacement_has_the_same_grammar() {
 #[test]
 fn a_tip_that_is_stated_is_the_tip() {
     let rod = Rod::from_toml("rod", include_str!("../../../../../rods/5.toml")).unwrap();
-    for tip in ["", "675"] {
+    for tip in ["", "675", "674.9999999"] {
         let rows: String = (1..=5).map(|k| format!("z,{k},{tip},{0}\nz,{k},410,{k}\n", 2 * k)).collect();
         let text = format!("axis,load_n,read_station_mm,dz_um\n{rows}");
         let readings = Readings::from_text("f", &text).unwrap();

@@ -9,6 +9,7 @@ mod beyond_the_data;
 mod clean;
 mod confused;
 mod effects;
+mod imposed_laws;
 mod labs;
 mod laws;
 mod own;

@@ -209,7 +209,7 @@ impl Compensation {
             let force = r.tr_mul(&times(&recording.device(row).rotation, &self.contact_force));
             let gravity = r.tr_mul(&gravity);
             most = most.max(laws.displacement(&compliance.force, &force, &gravity).norm());
-            for (law, x) in laws.beyond(&force, &gravity) {
+            for (law, x) in laws.beyond(&compliance.force, &force, &gravity) {
                 let x = x.abs();
                 match beyond.iter_mut().find(|(known, _)| *known == law) {
                     Some((_, largest)) => *largest = largest.max(x),

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! rod, load          C·F̂·ΔF(|F|)                      F̂ = F/|F|
+//! rod, deflection    C·F̂·ΔF(u)                        u = F̂ᵀ·C_F·F̂·(|F| + ΔF(u)), C_F where the load acts
 //! rod, load along    C·F·s(±F)                        where the load is along one axis
 //! root, joint        (θ(|M|)·M̂) × (p − x)             M the moment at x, p what is read
 //! clamp, load        F̂·Δu(|F|)                        of the rig
@@ -15,6 +16,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::Compliance;
 use crate::rod::constants::covariance;
+use crate::rod::law::should_show;
 use crate::rod::{LawVariable, Rod, RodLaw, RodLawPlace};
 use crate::units::{PERCENT, STANDARD_GRAVITY, UM, URAD};
 
@@ -79,11 +81,22 @@ impl StaticLaws {
         self.acting.iter().map(|acting| &acting.law)
     }
 
-    /// What they add to the displacement under a force (N) and gravity (in g), all in {T}, m;
-    /// `compliance` is the rod's without them, between the two stations, m/N.
+    /// What they add to the displacement where the load acts, under a force (N) and gravity (in g),
+    /// all in {T}, m; `compliance` is the rod's without them, there, m/N.
     pub fn displacement(
         &self,
         compliance: &Matrix3<f64>,
+        force: &Vector3<f64>,
+        gravity: &Vector3<f64>,
+    ) -> Vector3<f64> {
+        self.displacement_between([compliance, compliance], force, gravity)
+    }
+
+    /// The same of what is read elsewhere; the rod's compliance from the load to there, and where
+    /// the load acts.
+    pub fn displacement_between(
+        &self,
+        compliance: [&Matrix3<f64>; 2],
         force: &Vector3<f64>,
         gravity: &Vector3<f64>,
     ) -> Vector3<f64> {
@@ -146,19 +159,29 @@ impl StaticLaws {
         Compliance { force: square.force.map(root), gravity: square.gravity.map(root) }
     }
 
-    /// The largest load at the tip (N) that the laws were recorded with, each by its own variable.
-    pub fn recorded_load(&self) -> Option<f64> {
-        let of_acting = |acting: &Acting| match acting.levers {
-            Some([lever, _]) => acting.law.range.1 / lever.norm(),
-            None => acting.law.range.1,
+    /// The largest load at the tip (N) that the laws were recorded with, each by its own variable;
+    /// `compliance` is the rod's there, m/N.
+    pub fn recorded_load(&self, compliance: &Matrix3<f64>) -> Option<f64> {
+        let stiffest = compliance.diagonal().min();
+        let of_acting = |acting: &Acting| match (acting.levers, acting.law.variable) {
+            (Some([lever, _]), _) => acting.law.range.1 / lever.norm(),
+            (None, LawVariable::Deflection) => acting.law.range.1 * UM / stiffest,
+            (None, _) => acting.law.range.1,
         };
         self.acting.iter().map(of_acting).filter(|load| load.is_finite()).reduce(f64::max)
     }
 
-    /// Those that a load and gravity take beyond what was recorded: law and value of its variable.
-    pub fn beyond(&self, force: &Vector3<f64>, gravity: &Vector3<f64>) -> Vec<(&RodLaw, f64)> {
-        let beyond =
-            |acting: &'_ Acting| acting.variable(force, gravity).filter(|&x| acting.law.is_beyond(x));
+    /// Those that a load and gravity take beyond what was recorded: law and value of its variable;
+    /// `compliance` is the rod's where the load acts, m/N.
+    pub fn beyond(
+        &self,
+        compliance: &Matrix3<f64>,
+        force: &Vector3<f64>,
+        gravity: &Vector3<f64>,
+    ) -> Vec<(&RodLaw, f64)> {
+        let beyond = |acting: &'_ Acting| {
+            acting.variable(compliance, force, gravity).filter(|&x| acting.law.is_beyond(x))
+        };
         self.acting.iter().filter_map(|acting| Some((&acting.law, beyond(acting)?))).collect()
     }
 }
@@ -171,7 +194,12 @@ impl Acting {
     }
 
     /// The variable in its unit; `None` of a load along no axis.
-    fn variable(&self, force: &Vector3<f64>, gravity: &Vector3<f64>) -> Option<f64> {
+    fn variable(
+        &self,
+        compliance: &Matrix3<f64>,
+        force: &Vector3<f64>,
+        gravity: &Vector3<f64>,
+    ) -> Option<f64> {
         let along = |sign: f64| {
             let largest = force.iter().copied().reduce(|a, b| if b.abs() > a.abs() { b } else { a })?;
             (force.norm() == largest.abs()).then_some(sign * largest)
@@ -181,17 +209,23 @@ impl Acting {
             LawVariable::AlongPositive => along(1.0),
             LawVariable::AlongNegative => along(-1.0),
             LawVariable::Moment => Some(self.moment(force, gravity).norm()),
+            LawVariable::Deflection => {
+                let along = force.try_normalize(0.0).unwrap_or_default();
+                let per_newton = along.dot(&(compliance * along)) / UM;
+                // u of u − C·ΔF(u) = C·F
+                Some(should_show(per_newton * force.norm(), |u| -per_newton * self.law.at(u, 1.0)))
+            }
             _ => None,
         }
     }
 
     fn displacement(
         &self,
-        compliance: &Matrix3<f64>,
+        [compliance, at_load]: [&Matrix3<f64>; 2],
         force: &Vector3<f64>,
         gravity: &Vector3<f64>,
     ) -> Vector3<f64> {
-        let Some(x) = self.variable(force, gravity) else { return Vector3::zeros() };
+        let Some(x) = self.variable(at_load, force, gravity) else { return Vector3::zeros() };
         let value = self.law.at(x, 1.0);
         // a formula may be no number where it was not recorded, which `beyond` says
         if !value.is_finite() {
@@ -201,7 +235,7 @@ impl Acting {
         match (self.levers, &self.law.place) {
             (Some([_, read]), _) => (along(self.moment(force, gravity)) * (value * URAD)).cross(&read),
             (None, RodLawPlace::Clamp) => along(*force) * (value * UM),
-            (None, _) if self.law.variable == LawVariable::Load => compliance * along(*force) * value,
+            (None, _) if self.law.variable.adds_load() => compliance * along(*force) * value,
             (None, _) => compliance * force * (value * PERCENT),
         }
     }
@@ -310,8 +344,8 @@ mod tests {
             "{}",
             u.force
         );
-        assert!(laws.beyond(&force, &Vector3::zeros()).is_empty());
-        assert_eq!(laws.beyond(&(force * 4.0), &Vector3::zeros())[0].1, 12.0);
+        assert!(laws.beyond(&compliance, &force, &Vector3::zeros()).is_empty());
+        assert_eq!(laws.beyond(&compliance, &(force * 4.0), &Vector3::zeros())[0].1, 12.0);
         // of the rig 5 µm/N along the load besides
         let tip = with_law.length();
         let of_rig = StaticLaws::between(&with_law, tip, tip);

@@ -51,5 +51,5 @@ pub use form::{Form, FormConstant};
 pub use memory::Memory;
 pub use proposal::propose;
 pub use proposed::{Beside, Law, LawRival, NextRecord, Point, Proposed, Refusal, Second};
-pub use site::{Course, Instant, Measure, Site};
+pub use site::{Course, Instant, Measure, Recorded, Site};
 pub use stops::Stops;

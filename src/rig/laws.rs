@@ -10,6 +10,24 @@ use crate::rod::law::should_show;
 use crate::rod::{Rod, RodLaw, RodLawPlace};
 use crate::units::UM;
 
+/// The rod between what is loaded and what is read.
+struct Between {
+    stations: (f64, f64),
+    /// From the one to the other, and where the load acts, m/N.
+    compliance: [Matrix3<f64>; 2],
+    laws: StaticLaws,
+}
+
+impl Between {
+    fn new(rod: &Rod, physics: &Physics, elements: usize, stations: (f64, f64)) -> Result<Between> {
+        let (load, read) = stations;
+        let model = RodModel::new(rod, physics, elements, &[load, read])?;
+        let from_load = |to| model.force_response(load, to).map(|response| response.translation);
+        let compliance = [from_load(read)?, from_load(load)?];
+        Ok(Between { stations, compliance, laws: StaticLaws::between(rod, load, read) })
+    }
+}
+
 /// The readings less all laws that the load alone decides on.
 ///
 /// # Errors
@@ -18,7 +36,7 @@ pub fn without_laws(readings: &Readings, rod: &Rod, physics: &Physics, elements:
     let mut without = readings.clone();
     let tip = rod.length();
     let at = |station: Option<f64>| station.unwrap_or(tip).min(tip);
-    let mut known: Vec<((f64, f64), Matrix3<f64>, StaticLaws)> = Vec::new();
+    let mut known: Vec<Between> = Vec::new();
     for row in &mut without.rows {
         for channel in Axis::ALL {
             let laws = rod.laws.iter().filter(|law| is_read_by(law, channel));
@@ -26,19 +44,17 @@ pub fn without_laws(readings: &Readings, rod: &Rod, physics: &Physics, elements:
                 laws.for_each(|law| *offset = UM * should_show(*offset / UM, |y| law.at(y, 1.0)));
             }
         }
-        let pair = (at(row.load_station), at(row.read_station));
-        let place = match known.iter().position(|(own, ..)| *own == pair) {
+        let stations = (at(row.load_station), at(row.read_station));
+        let place = match known.iter().position(|own| own.stations == stations) {
             Some(place) => place,
             None => {
-                let model = RodModel::new(rod, physics, elements, &[pair.0, pair.1])?;
-                let compliance = model.force_response(pair.0, pair.1)?.translation;
-                known.push((pair, compliance, StaticLaws::between(rod, pair.0, pair.1)));
+                known.push(Between::new(rod, physics, elements, stations)?);
                 known.len() - 1
             }
         };
-        let (_, compliance, laws) = &known[place];
+        let Between { compliance, laws, .. } = &known[place];
         let force = Vector3::ith(row.direction.axis.index(), f64::from(row.direction.sign) * row.load);
-        let more = laws.displacement(compliance, &force, &Vector3::zeros());
+        let more = laws.displacement_between([&compliance[0], &compliance[1]], &force, &Vector3::zeros());
         for (offset, more) in row.offset.iter_mut().zip(more.iter()) {
             *offset = offset.map(|offset| offset - more);
         }

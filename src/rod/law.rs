@@ -3,7 +3,8 @@
 //! ```text
 //! place        what the formula adds                                   in
 //! rod          to the load F that bends the rod, y = C·(F + ΔF)        N
-//!              or, over other variables than the load, to the deflection, a share of it   %
+//!              over the load, or over the deflection along it, y = C·(F + ΔF(y))
+//!              or, over other variables, to the deflection, a share of it   %
 //! clamp        to the displacement along the load                      µm
 //! root, joint  to the turn about the moment there                      µrad
 //! slide        to the last change of the deflection, a share of it     %
@@ -40,6 +41,8 @@ pub enum LawVariable {
     Moment,
     /// What the sensor should show.
     Reading,
+    /// How far the rod is deflected along the load, where that acts.
+    Deflection,
     /// The time since the load was changed.
     SinceChange,
     /// The change of the load over the time that it took, positive where the load grew.
@@ -91,11 +94,13 @@ impl PartialEq for RodLaw {
     }
 }
 
-/// What a sensor should have shown: y of y + Δy(y) = what it showed, by small steps, so that a wave
-/// steeper than 1 ends at one of its roots.
+/// How often, and by which part of what is missing, a value that depends on itself is corrected:
+/// by small steps, so that what is steeper than 1 ends at one of its roots.
+pub(crate) const ROUNDS: usize = 60;
+pub(crate) const STEP: f64 = 0.3;
+
+/// What a sensor should have shown: y of y + Δy(y) = what it showed.
 pub(crate) fn should_show(showed: f64, law: impl Fn(f64) -> f64) -> f64 {
-    const ROUNDS: usize = 60;
-    const STEP: f64 = 0.3;
     let mut y = showed;
     for _ in 0..ROUNDS {
         y += STEP * (showed - law(y) - y);
@@ -106,13 +111,14 @@ pub(crate) fn should_show(showed: f64, law: impl Fn(f64) -> f64) -> f64 {
 
 impl LawVariable {
     /// All of them.
-    pub const ALL: [LawVariable; 8] = [
+    pub const ALL: [LawVariable; 9] = [
         LawVariable::Load,
         LawVariable::AlongPositive,
         LawVariable::AlongNegative,
         LawVariable::LoadBefore,
         LawVariable::Moment,
         LawVariable::Reading,
+        LawVariable::Deflection,
         LawVariable::SinceChange,
         LawVariable::LoadingSpeed,
     ];
@@ -126,6 +132,7 @@ impl LawVariable {
             LawVariable::LoadBefore => "load_before",
             LawVariable::Moment => "moment",
             LawVariable::Reading => "reading",
+            LawVariable::Deflection => "deflection",
             LawVariable::SinceChange => "time_since_change_s",
             LawVariable::LoadingSpeed => "loading_speed_n_per_s",
         }
@@ -140,6 +147,7 @@ impl LawVariable {
             LawVariable::LoadBefore => "load that hung before",
             LawVariable::Moment => "moment",
             LawVariable::Reading => "reading",
+            LawVariable::Deflection => "deflection along the load",
             LawVariable::SinceChange => "time since the load was changed",
             LawVariable::LoadingSpeed => "speed of loading",
         }
@@ -152,6 +160,7 @@ impl LawVariable {
             LawVariable::LoadBefore => "F'",
             LawVariable::Moment => "M",
             LawVariable::Reading => "y",
+            LawVariable::Deflection => "u",
             LawVariable::SinceChange => "t",
             LawVariable::LoadingSpeed => "v",
         }
@@ -161,7 +170,7 @@ impl LawVariable {
     pub fn unit(self) -> &'static str {
         match self {
             LawVariable::Moment => "N·m",
-            LawVariable::Reading => "µm",
+            LawVariable::Reading | LawVariable::Deflection => "µm",
             LawVariable::SinceChange => "s",
             LawVariable::LoadingSpeed => "N/s",
             LawVariable::Load
@@ -174,6 +183,12 @@ impl LawVariable {
     /// True where values of both signs are usual: a law is odd in it.
     pub(crate) fn has_both_signs(self) -> bool {
         matches!(self, LawVariable::Reading | LawVariable::LoadingSpeed)
+    }
+
+    /// True where a law of the rod adds to the load that bends it, N: over all else it adds a share
+    /// of the deflection.
+    pub(crate) fn adds_load(self) -> bool {
+        matches!(self, LawVariable::Load | LawVariable::Deflection)
     }
 
     /// True where a law of this variable may act at a place.
@@ -238,7 +253,7 @@ impl RodLaw {
     /// Unit of what the formula adds, for people.
     pub fn unit(&self) -> &'static str {
         match &self.place {
-            RodLawPlace::Rod if self.variable == LawVariable::Load => "N",
+            RodLawPlace::Rod if self.variable.adds_load() => "N",
             RodLawPlace::Rod | RodLawPlace::Slide => "%",
             RodLawPlace::Clamp | RodLawPlace::Sensor(_) => "µm",
             RodLawPlace::Root | RodLawPlace::Bend | RodLawPlace::Joint(_) => "µrad",
@@ -248,7 +263,7 @@ impl RodLaw {
     /// Symbol of what the formula adds to.
     pub fn result(&self) -> &'static str {
         match &self.place {
-            RodLawPlace::Rod if self.variable == LawVariable::Load => "ΔF",
+            RodLawPlace::Rod if self.variable.adds_load() => "ΔF",
             RodLawPlace::Rod | RodLawPlace::Slide => "Δu/u",
             RodLawPlace::Clamp => "Δu",
             RodLawPlace::Sensor(_) => "Δy",

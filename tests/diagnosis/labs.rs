@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::{Answer, interval};
 
 /// A straight tube of 600 mm, 12 × 8 mm.
-const ROD: &str = "name = \"straight\"
+pub const ROD: &str = "name = \"straight\"
 [geometry]
 l1_mm = 300.0
 l2_mm = 300.0
@@ -27,30 +27,30 @@ material = \"steel\"
 outer_diameter_mm = 12.0
 inner_diameter_mm = 8.0
 ";
-const LENGTH: f64 = 0.6;
+pub const LENGTH: f64 = 0.6;
 const SEEDS: std::ops::Range<u64> = 0..2;
 
 /// Moduli, Pa, off by 0.7 and 1.2 % (1 σ), and the noise.
-struct Lab {
+pub struct Lab {
     random: Random,
     e: f64,
     g: f64,
 }
 
 impl Lab {
-    fn new(seed: u64) -> Lab {
+    pub fn new(seed: u64) -> Lab {
         let mut random = Random::seeded(seed, 14);
         let (e, g) = (200e9 * (1.0 + 0.007 * random.normal()), 77e9 * (1.0 + 0.012 * random.normal()));
         Lab { random, e, g }
     }
 
-    fn noise(&mut self, sd: f64) -> f64 {
+    pub fn noise(&mut self, sd: f64) -> f64 {
         sd * self.random.normal()
     }
 
     /// Deflection at a station per load at the tip, m/N, with a compliant root (rad/(N·m)):
     /// Euler–Bernoulli with Timoshenko's shear, κ by Cowper (J. Appl. Mech. 33 (1966) 335–340).
-    fn compliance(&self, s: f64, root: f64) -> f64 {
+    pub fn compliance(&self, s: f64, root: f64) -> f64 {
         let (outer, inner) = (0.012f64, 0.008f64);
         let second = std::f64::consts::PI / 64.0 * (outer.powi(4) - inner.powi(4));
         let area = std::f64::consts::PI / 4.0 * (outer.powi(2) - inner.powi(2));

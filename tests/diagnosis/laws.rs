@@ -269,3 +269,25 @@ fn a_law_changes_no_finding_and_has_its_section() {
     assert_eq!(answer.json["verdict"], "mismatch");
     assert!(answer.json["unexplained"]["location"].is_string());
 }
+
+/// A magnet 1.5 mm away, that pulls the more the nearer the tip comes: of the deflection, which is
+/// another load along y than along z.
+#[test]
+fn a_magnet_pulls_by_the_deflection() {
+    let spec = CaseSpec { loads: (1..=20).map(|k| 0.5 * f64::from(k)).collect(), ..spec() };
+    let mut intervals = Vec::new();
+    for seed in 60..63 {
+        let answer = concealed(&spec, seed, |row| {
+            let (away, c) = (1500.0, row.predicted / row.load);
+            let pull = |u: f64| 4e5 * (1.0 / (away - u).powi(2) - 1.0 / f64::powi(away, 2));
+            let with_pull = (0..200).fold(row.predicted, |u, _| row.predicted + c * pull(u));
+            with_pull - row.predicted
+        });
+        let law = law(&answer);
+        assert_eq!((&law["variable"]["symbol"], &law["location"]), (&"u".into(), &"rod".into()), "{law}");
+        assert_eq!(law["form"], "inverse square of a distance", "{law}");
+        intervals.push(constant(law, "u_0"));
+    }
+    let holds = |[low, _, high]: &[f64; 3]| 0.99 * low < 1500.0 && 1500.0 < 1.01 * high;
+    assert!(intervals.iter().all(holds), "{intervals:?}");
+}

@@ -10,8 +10,9 @@ const MOST: usize = 2000;
 const NOTHING: f64 = 5.0;
 /// Ln of the density by which two neighbours may differ.
 const STEP: f64 = 0.2;
-/// For so many rounds every peak counts that is so far below the highest.
-const FLANKS: (usize, f64) = (3, 40.0);
+/// For so many rounds every peak counts that is so far below the highest, or that has at least this
+/// part of its evidence: the clearer a wave, the more of it is lost between the points of a grid.
+const FLANKS: (usize, f64, f64) = (3, 40.0, 0.5);
 /// Part of the whole from which on a peak counts, however low it is.
 const MANY: f64 = 0.05;
 /// Ln of the density below its largest up to which an end is open.
@@ -68,13 +69,11 @@ impl Posterior {
     pub fn refine(&mut self, evidence: &dyn Fn(&[f64]) -> Vec<f64>) {
         for round in 0..ROUNDS {
             let (_, most) = self.best();
+            let flanks = most - FLANKS.1.max((1.0 - FLANKS.2) * most);
             let at = |k: usize| self.points.get(k).map_or(f64::NEG_INFINITY, |point| point.1);
             // what looks low may be the flank of a narrow peak
             let is_flank = |k: usize| {
-                round < FLANKS.0
-                    && at(k) > most - FLANKS.1
-                    && at(k) >= at(k + 1)
-                    && (k == 0 || at(k) >= at(k - 1))
+                round < FLANKS.0 && at(k) > flanks && at(k) >= at(k + 1) && (k == 0 || at(k) >= at(k - 1))
             };
             let is_coarse = |k: &usize| {
                 let (one, other) = (at(*k), at(k + 1));
@@ -216,6 +215,18 @@ mod tests {
         posterior.refine(&evidence);
         let peaks = posterior.peaks(20.0);
         assert!(peaks.len() == 2 && (peaks[1].0 - 0.7).abs() < 0.005, "{peaks:?}");
+    }
+
+    /// Two that are as high, of which one alone is near a point of the first grid.
+    #[test]
+    fn a_high_peak_between_points_is_no_lower_than_one_at_a_point() {
+        let peak = |u: f64, at: f64| 700.0 - (700.0 * ((u - at) / 0.02).powi(2)).min(650.0);
+        let evidence = |us: &[f64]| us.iter().map(|u| peak(*u, 0.251).max(peak(*u, 0.715))).collect();
+        let grid: Vec<f64> = (0..=40).map(|k| f64::from(k) / 40.0).collect();
+        let mut posterior = Posterior::new(&grid, &|us| evidence(us));
+        posterior.refine(&|us| evidence(us));
+        let peaks = posterior.peaks(20.0);
+        assert!(peaks.len() == 2 && (peaks[0].0 - peaks[1].0).abs() > 0.4, "{peaks:?}");
     }
 
     #[test]

@@ -134,10 +134,11 @@ impl<'a> Remainder<'a> {
     }
 
     /// What of each residual is none of the displacement where a law is fitted with all else: what
-    /// that leaves, the zeros, and the law.
-    pub fn no_displacement(&self, columns: &DMatrix<f64>) -> DVector<f64> {
+    /// that leaves, the zeros, and the law unless it displaces.
+    pub fn no_displacement(&self, columns: &DMatrix<f64>, law_displaces: bool) -> DVector<f64> {
         let fitted = self.fit(columns);
-        &self.whole.residual - fitted.predicted + fitted.own + fitted.zeros
+        let other = &self.whole.residual - fitted.predicted + fitted.zeros;
+        if law_displaces { other } else { other + fitted.own }
     }
 
     /// Columns of the background that are zeros.

@@ -91,9 +91,9 @@ pub(super) fn scan(remainder: &Remainder, sites: &[Site], size: f64) -> Scan {
     scan_some(remainder, sites, size, |_| true)
 }
 
-/// The same where the likeliest law may be a function of what a sensor should have shown: that is
-/// what is predicted with the law there, for the stiffness that is fitted beside it is another.
-/// What was recorded is no stand-in: what the law misses would explain itself by it.
+/// The same where the likeliest law may be a function of what sensors show, or should have shown:
+/// that is what is predicted with the law there, for the stiffness that is fitted beside it is
+/// another. What was recorded is no stand-in: what the law misses would explain itself by it.
 pub(super) fn scan_as_predicted(
     remainder: &Remainder,
     sites: &mut [Site],
@@ -107,8 +107,12 @@ pub(super) fn scan_as_predicted(
     // with each of its values the variable is another: each is tried with its own
     let (number, choice) = (best.choice.site, best.choice);
     let as_predicted = |u: f64| -> Vec<f64> {
-        let other = remainder.no_displacement(&choice.columns(site, u, size).columns);
-        recorded.iter().zip(other.iter()).map(|(value, other)| value - other).collect()
+        let columns = choice.columns(site, u, size).columns;
+        let other = remainder.no_displacement(&columns, recorded.with_law);
+        let shown = |(by, value): (&Option<(usize, f64)>, &f64)| {
+            by.map_or(*value, |(k, sign)| sign * (recorded.data[k] - other[k]))
+        };
+        recorded.by.iter().zip(&site.values).map(shown).collect()
     };
     let below = FAR.max(MISSED * best.posterior.best().1);
     let tried = best.posterior.highest(MOST_TRIED, (below, APART.ln()));

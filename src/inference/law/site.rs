@@ -36,6 +36,25 @@ pub struct Instant {
     pub sense: f64,
 }
 
+/// A variable that data show.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recorded {
+    /// All data as they were recorded, SI.
+    pub data: Vec<f64>,
+    /// The datum that shows the variable of each, and the sign with which; nothing where none does.
+    pub by: Vec<Option<(usize, f64)>>,
+    /// True where the variable is shown with what the law adds to it, and not without.
+    pub with_law: bool,
+}
+
+impl Recorded {
+    /// Of a sensor whose law is a function of what it should show.
+    pub fn by_itself(data: Vec<f64>) -> Recorded {
+        let by = (0..data.len()).map(|i| Some((i, 1.0))).collect();
+        Recorded { data, by, with_law: false }
+    }
+}
+
 /// A place with a variable.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
@@ -51,9 +70,9 @@ pub struct Site {
     pub directions: Vec<(String, Vec<f64>)>,
     /// The variable at each datum, SI; NaN where the law has nothing to say.
     pub values: Vec<f64>,
-    /// Where the variable is what was recorded, without what the law adds to it: the recorded
-    /// values, SI. `values` are the predicted ones, whose scale is as uncertain as the model's.
-    pub recorded: Option<Vec<f64>>,
+    /// Where the variable is what data show: `values` are the predicted ones, whose scale is as
+    /// uncertain as the model's.
+    pub recorded: Option<Recorded>,
     /// For each datum 1 where the load went up to it, −1 where it came down; nothing where the
     /// variable is no load.
     pub moves: Vec<f64>,

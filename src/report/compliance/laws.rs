@@ -104,7 +104,7 @@ fn is_used(study: &Study) -> bool {
 
 /// The contact force, and up to the largest load that was recorded; ascending.
 fn loads(study: &Study) -> Vec<f64> {
-    let largest = study.laws.recorded_load().filter(|load| *load > 0.0);
+    let largest = study.laws.recorded_load(&study.linear.force).filter(|load| *load > 0.0);
     let parts = largest.into_iter().flat_map(|load| [0.25, 0.5, 1.0].map(|share| share * load));
     let mut loads: Vec<f64> = parts.chain([study.contact_force]).filter(|load| *load > 0.0).collect();
     loads.sort_by(f64::total_cmp);
@@ -114,5 +114,6 @@ fn loads(study: &Study) -> Vec<f64> {
 
 fn is_beyond(study: &Study, load: f64) -> bool {
     let axes = (0..3).map(|axis| Vector3::ith(axis, load));
-    axes.into_iter().any(|force| !study.laws.beyond(&force, &Vector3::zeros()).is_empty())
+    axes.into_iter()
+        .any(|force| !study.laws.beyond(&study.linear.force, &force, &Vector3::zeros()).is_empty())
 }

@@ -39,7 +39,7 @@ impl SiteVariable {
     pub fn measure(self) -> Measure {
         match self {
             SiteVariable::OfFile(variable) => {
-                let si = if variable == LawVariable::Reading { UM } else { 1.0 };
+                let si = if variable.unit() == "µm" { UM } else { 1.0 };
                 measure(variable.symbol(), variable.description(), variable.unit(), si)
             }
             SiteVariable::Time => measure("t", "time", "s", 1.0),

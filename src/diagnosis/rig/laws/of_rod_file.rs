@@ -11,10 +11,11 @@ use super::remembered::remembered;
 use super::sites::sites;
 use crate::diagnosis::rig::model::RigModel;
 use crate::diagnosis::rig::model::nominal::KnownNumber;
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::law::Site;
 use crate::inference::{Evidence, NominalParameter};
-use crate::rod::law::should_show;
-use crate::rod::{LawConstant, Rod, RodLaw};
+use crate::rod::law::{ROUNDS, STEP, should_show};
+use crate::rod::{LawConstant, LawVariable, Rod, RodLaw};
 
 /// Takes what the laws of the rod's file add out of the data; which of them these readings have no
 /// data for.
@@ -32,12 +33,13 @@ pub fn take_out(model: &mut RigModel, evidence: &mut Evidence, rod: &Rod) -> Vec
             unused.push(law.clone());
             continue;
         };
+        let own_deflection = hung_compliance(model, site, law.variable);
         let added = |changed: Option<(usize, f64)>, argument: Argument| {
             let value = |k: usize, own: &LawConstant| match changed {
                 Some((other, by)) if other == k => own.value + by,
                 _ => own.value,
             };
-            added(law, site, &value, argument)
+            added(law, (site, own_deflection.as_deref()), &value, argument)
         };
         adds += added(None, Argument::Recorded);
         predicted += added(None, Argument::Predicted);
@@ -81,10 +83,19 @@ enum Argument {
     Predicted,
 }
 
-/// What a law adds to each datum, m.
+/// Of a law of the deflection under loads that hang: what each newton there adds to its variable,
+/// m/N.
+fn hung_compliance(model: &RigModel, site: &Site, variable: LawVariable) -> Option<Vec<f64>> {
+    let is_hung = variable == LawVariable::Deflection && model.data.iter().all(|d| d.imposed.is_none());
+    let compliance = |(u, d): (&f64, &Datum)| if d.load > 0.0 { u / d.load } else { 0.0 };
+    is_hung.then(|| site.values.iter().zip(&model.data).map(compliance).collect())
+}
+
+/// What a law adds to each datum, m; where it changes its own variable by so much per newton, at
+/// what that is with it.
 fn added(
     law: &RodLaw,
-    site: &Site,
+    (site, compliance): (&Site, Option<&[f64]>),
     value: &dyn Fn(usize, &LawConstant) -> f64,
     argument: Argument,
 ) -> DVector<f64> {
@@ -96,17 +107,28 @@ fn added(
         law.with(x, side, named) * site.result.si
     };
     let own = |name: &str| law.constants.iter().position(|own| own.name == name).map_or(0.0, |k| values[k]);
-    let (si, followed) = (site.variable.si, remembered(law.memory, site, own));
+    let si = site.variable.si;
+    let side = |i: usize| site.moves.get(i).copied().unwrap_or(1.0);
+    let mut with_law = site.clone();
+    let mut followed = remembered(law.memory, site, own);
+    // u of u = C·(F + ΔF(u))
+    for _ in 0..compliance.map_or(0, |_| ROUNDS) {
+        for (i, u) in with_law.values.iter_mut().enumerate() {
+            let more = compliance.map_or(0.0, |compliance| compliance[i]) * at(followed[i] / si, side(i));
+            *u += STEP * (site.values[i] + more - *u);
+        }
+        followed = remembered(law.memory, &with_law, own);
+    }
     let weights = &site.directions[0].1;
     let at_datum = |i: usize| {
-        let side = site.moves.get(i).copied().unwrap_or(1.0);
+        let side = side(i);
         if weights[i] == 0.0 || !followed[i].is_finite() {
             return 0.0;
         }
-        match site.recorded.as_ref().filter(|_| argument == Argument::Recorded) {
+        match site.recorded.as_ref().filter(|own| argument == Argument::Recorded && !own.with_law) {
             // y of y + Δy(y) = what was recorded
             Some(recorded) => {
-                let y = should_show(recorded[i] / si, |y| weights[i] * at(y, side) / si);
+                let y = should_show(recorded.data[i] / si, |y| weights[i] * at(y, side) / si);
                 weights[i] * at(y, side)
             }
             None => weights[i] * at(followed[i] / si, side),

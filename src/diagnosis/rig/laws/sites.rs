@@ -2,7 +2,7 @@
 //!
 //! | place | what the law changes | functions of |
 //! |---|---|---|
-//! | rod | the load F that the rod follows, y = C·(F + ΔF) | load |
+//! | rod | the load F that the rod follows, y = C·(F + ΔF) | load, deflection along it |
 //! | clamp | displacement along the load | load |
 //! | rod | the load, by friction | speed of loading |
 //! | root, bend, declared joints | turn θ about the moment there, y = (θ·M/\|M\|) × lever | moment |
@@ -11,16 +11,15 @@
 //! | sensor | what a channel shows | what it should show |
 //! | sensors | offsets of all channels | time, temperature, order |
 
-use std::collections::BTreeMap;
-
 use nalgebra::{DVector, Vector3};
 
+use super::deflected::Deflected;
 use super::measures::{SiteVariable, measure};
 use crate::diagnosis::rig::mechanics::load_history::{instants, runs};
 use crate::diagnosis::rig::model::{Body, RigModel};
 use crate::diagnosis::rig::nonparametric::Before;
 use crate::diagnosis::rig::recording::datum::Datum;
-use crate::inference::law::{Course, Form, Instant, Measure, Site};
+use crate::inference::law::{Course, Form, Instant, Measure, Recorded, Site};
 use crate::inference::{Location, Part};
 use crate::rod::{LawVariable, Rod};
 use crate::spatial::Axis;
@@ -43,6 +42,8 @@ const OF_A_STOP: &[Form] = &[
 ];
 /// With two signs, of which each may be another case.
 const OF_A_SIDE: &[Form] = Form::FROM_ANYWHERE;
+/// Of a distance: what pulls from there, or is touched there.
+const OF_A_DISTANCE: &[Form] = &[Form::Pull, Form::Threshold];
 /// From the first reading on: time, order. What swings had begun before.
 const OF_TIME: &[Form] = &[
     Form::Threshold,
@@ -68,27 +69,20 @@ const FADING: &[Form] = &[Form::Approach, Form::Decay, Form::Logarithm, Form::Po
 /// Pipes that turn by less are one, rad.
 const LEAST_TURN: f64 = 1e-3;
 
-/// All places, given what is known to change each datum, m. Nothing where the displacement was
-/// imposed.
+/// All places, given what is known to change each datum, m.
 pub fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
     let data = &model.data;
-    if data.iter().any(|d| d.imposed.is_some()) {
-        return Vec::new();
-    }
-    let bare = model.deflections();
-    // what each datum shows by what is known
-    let known: Vec<f64> = bare.iter().zip(change.iter()).map(|(u, more)| u + more).collect();
-    let slopes = slopes(data, &bare, change);
-    let loads: Vec<f64> = data.iter().map(|d| d.load).collect();
-    let recording = Recording { data, moves: moves(data), by_load: courses(data, |_| 0.0) };
+    let deflected = Deflected::new(model, change);
+    let recording = Recording { data, deflected: &deflected, moves: moves(data, &deflected) };
     let newton = || (Location::Part(Part::Rod), measure("ΔF", "effective load", "N", 1.0));
-    let of_load = (slopes.clone(), loads.clone());
-    let mut sites = vec![recording.of_load(newton(), LawVariable::Load, of_load, OF_A_LOAD)];
-    let sign = |d: &Datum| if d.channel == d.direction.axis { f64::from(d.direction.sign) } else { 0.0 };
+    let mut sites = vec![recording.of_deflection(newton())];
+    let of_load = (deflected.slope.clone(), deflected.load.clone());
+    sites.push(recording.of_load(newton(), LawVariable::Load, of_load, OF_A_LOAD));
+    let sign = |(d, sense): (&Datum, &f64)| if d.channel == d.direction.axis { *sense } else { 0.0 };
     sites.push(recording.of_load(
         (Location::Part(Part::Clamp), measure("Δu", "displacement along the load", "µm", UM)),
         LawVariable::Load,
-        (data.iter().map(sign).collect(), loads),
+        (data.iter().zip(&deflected.sense).map(sign).collect(), deflected.load.clone()),
         OF_A_CONTACT,
     ));
     if let (Some(rod), Body::Rod(_)) = (&model.rod, &model.body) {
@@ -96,7 +90,8 @@ pub fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
         let bend = (rod.turn().abs() > LEAST_TURN).then(|| (Location::Part(Part::Bend), rod.bend_middle()));
         let places = std::iter::once((Location::Part(Part::Root), 0.0)).chain(bend).chain(declared);
         for (location, station) in places {
-            let (weights, moments) = data.iter().map(|d| turned(d, rod, station)).unzip();
+            let turned = |(i, d)| turned(d, rod, station, deflected.signed_load(i), deflected.sense[i]);
+            let (weights, moments) = data.iter().enumerate().map(turned).unzip();
             // a bend is of one piece
             let rare = if location == Location::Part(Part::Bend) { OF_A_CONTACT } else { &[] };
             let turn = (location, measure("Δθ", "turn", "µrad", 1e-6));
@@ -104,10 +99,10 @@ pub fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
             sites.push(Site { rare, ..site });
         }
     }
-    sites.extend(recording.shares(&known));
-    if let Some(speeds) = Before::of(data).speeds(data) {
+    sites.extend(recording.shares());
+    if let Some(speeds) = recording.speeds() {
         let ((location, result), speed) = (newton(), SiteVariable::OfFile(LawVariable::LoadingSpeed));
-        let directions = vec![(String::new(), slopes)];
+        let directions = vec![(String::new(), deflected.slope.clone())];
         sites.push(Site::new(location, result, speed.measure(), directions, speeds, OF_A_FRICTION));
     }
     for channel in Axis::ALL {
@@ -117,8 +112,8 @@ pub fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
             result: measure("Δy", "reading", "µm", UM),
             variable: SiteVariable::OfFile(LawVariable::Reading).measure(),
             directions: vec![(String::new(), data.iter().map(weight).collect())],
-            values: known.clone(),
-            recorded: Some(data.iter().map(|d| d.measured).collect()),
+            values: deflected.read.clone(),
+            recorded: Some(Recorded::by_itself(data.iter().map(|d| d.measured).collect())),
             moves: Vec::new(),
             courses: Vec::new(),
             forms: OF_A_LOAD,
@@ -127,66 +122,58 @@ pub fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
         sites.push(site);
     }
     sites.extend(recording.drifts());
-    sites
+    if deflected.is_imposed {
+        // the zero of the load cell
+        let of_load = |common: Common| {
+            let (directions, variable) =
+                (vec![(String::new(), deflected.slope.clone())], common.variable.measure());
+            let (location, result) = newton();
+            let site = Site::new(location, result, variable, directions, common.values, common.forms);
+            Site { moves: Vec::new(), courses: common.courses, ..site }
+        };
+        sites.extend(recording.common().into_iter().map(of_load));
+    }
+    sites.into_iter().map(|site| deflected.as_measured(site)).collect()
 }
 
-/// How far a datum moves by a turn of 1 rad at a station about the moment there, and that moment,
-/// N·m.
-fn turned(datum: &Datum, rod: &Rod, station: f64) -> (f64, f64) {
+/// How far a datum moves by a turn of 1 rad at a station about the moment there of a load, N along
+/// the positive axis, or of one of that sense; and that moment, N·m.
+fn turned(datum: &Datum, rod: &Rod, station: f64, load: f64, sense: f64) -> (f64, f64) {
     let tip = rod.length();
     let at = |s: Option<f64>| s.unwrap_or(tip).min(tip);
-    let (load, read) = (at(datum.load_station), at(datum.read_station));
-    if station > load.min(read) {
+    let (loaded, read) = (at(datum.load_station), at(datum.read_station));
+    if station > loaded.min(read) {
         return (0.0, 0.0);
     }
     let lever = |s: f64| rod.point(s) - rod.point(station);
     // at no load, that of the load that hung there or will
-    let newton = Vector3::ith(datum.direction.axis.index(), f64::from(datum.direction.sign));
-    let moment = lever(load).cross(&newton);
+    let newton = Vector3::ith(datum.direction.axis.index(), sense);
+    let moment = lever(loaded).cross(&newton);
     let size = moment.norm();
     match size > 0.0 {
-        true => ((moment / size).cross(&lever(read))[datum.channel.index()], size * datum.load),
+        true => ((moment / size).cross(&lever(read))[datum.channel.index()], size * load.abs()),
         false => (0.0, 0.0),
     }
 }
 
-/// What a newton that bends the rod moves each datum by, m/N: what it shows without findings and
-/// nominal numbers at this load, and on average what these `change` of that. Friction, loops and
-/// offsets among them are no compliance.
-fn slopes(data: &[Datum], bare: &[f64], change: &DVector<f64>) -> Vec<f64> {
-    type Place = (Axis, Axis, [u64; 2]);
-    let place = |d: &Datum| -> Place { (d.direction.axis, d.channel, d.stations()) };
-    // bare·F, change·F and F² of each
-    let mut sums: BTreeMap<Place, [f64; 3]> = BTreeMap::new();
-    for (i, d) in data.iter().enumerate() {
-        let (load, sum) = (d.signed_load(), sums.entry(place(d)).or_default());
-        sum[0] += bare[i] * load;
-        sum[1] += change[i] * load;
-        sum[2] += load * load;
-    }
-    let slope = |(i, d): (usize, &Datum)| {
-        let [own, more, square] = sums[&place(d)];
-        if square == 0.0 {
-            return 0.0;
-        }
-        let own = if d.load > 0.0 { bare[i] / d.signed_load() } else { own / square };
-        f64::from(d.direction.sign) * (own + more / square)
-    };
-    data.iter().enumerate().map(slope).collect()
-}
-
 /// 1 for what was reached on the way up, −1 on the way down.
-fn moves(data: &[Datum]) -> Vec<f64> {
-    data.iter().map(|d| if d.is_unloading() { -1.0 } else { 1.0 }).collect()
+fn moves(data: &[Datum], deflected: &Deflected) -> Vec<f64> {
+    let side = |(i, d): (usize, &Datum)| match d.imposed.and(d.motion) {
+        Some(motion) if motion.direction != 0.0 => motion.direction * deflected.sense[i],
+        _ if d.is_unloading() => -1.0,
+        _ => 1.0,
+    };
+    let sides: Vec<f64> = data.iter().enumerate().map(side).collect();
+    deflected.as_driven(&sides)
 }
 
 /// Runs, with what was waited before each reading.
-fn courses(data: &[Datum], start: impl Fn(&[usize]) -> f64) -> Vec<Course> {
+fn courses(data: &[Datum], deflected: &Deflected) -> Vec<Course> {
     let waits = Before::of(data).wait;
     let of_run = |run: Vec<usize>| {
         let mut before: Option<usize> = None;
         let instants = instants(data, &run).into_iter().map(|instant| {
-            let own = instant[0];
+            let own = deflected.driven[instant[0]];
             let is_same = |k: &usize| data[*k].drive() == data[own].drive();
             // at the same load it waits on since the reading before
             let elapsed = match before.filter(is_same).and_then(|k| data[own].time.zip(data[k].time)) {
@@ -194,10 +181,10 @@ fn courses(data: &[Datum], start: impl Fn(&[usize]) -> f64) -> Vec<Course> {
                 None => waits.as_ref().map_or(f64::NAN, |waits| waits[own]),
             };
             before = Some(own);
-            Instant { data: instant, elapsed, sense: f64::from(data[own].direction.sign) }
+            Instant { data: instant, elapsed, sense: deflected.sense[own] }
         });
         let instants = instants.collect();
-        Course { instants, start: start(&run) }
+        Course { instants, start: 0.0 }
     };
     runs(data).into_iter().map(of_run).collect()
 }
@@ -205,12 +192,12 @@ fn courses(data: &[Datum], start: impl Fn(&[usize]) -> f64) -> Vec<Course> {
 /// A recording with what laws of several places need of it.
 struct Recording<'a> {
     data: &'a [Datum],
+    deflected: &'a Deflected,
     moves: Vec<f64>,
-    by_load: Vec<Course>,
 }
 
 impl Recording<'_> {
-    /// A law of a load or of what grows with it.
+    /// A law of a load or of what grows with it. It remembers the way of the loads that were hung.
     fn of_load(
         &self,
         (location, result): (Location, Measure),
@@ -218,13 +205,6 @@ impl Recording<'_> {
         (weights, values): (Vec<f64>, Vec<f64>),
         forms: &'static [Form],
     ) -> Site {
-        // loads along several axes have no common course
-        let of_run = |course: &Course| {
-            let mut axes = course.instants.iter().map(|instant| self.data[instant.data[0]].direction.axis);
-            let first = axes.next();
-            axes.all(|axis| Some(axis) == first)
-        };
-        let courses = if self.by_load.iter().all(of_run) { self.by_load.clone() } else { Vec::new() };
         Site {
             location,
             result,
@@ -233,16 +213,55 @@ impl Recording<'_> {
             values,
             recorded: None,
             moves: self.moves.clone(),
-            courses,
+            courses: if self.deflected.is_imposed { Vec::new() } else { self.one_by_one() },
             // nothing that gives way does so in waves
             forms,
             rare: &[],
         }
     }
 
+    /// A law of the deflection along the load. It remembers the way of what was imposed. Under hung
+    /// loads it is looked for as a law of a distance: all else is one of the load by another name.
+    fn of_deflection(&self, (location, result): (Location, Measure)) -> Site {
+        let Deflected { slope, along, .. } = self.deflected;
+        let site = self.of_load(
+            (location, result),
+            LawVariable::Deflection,
+            (slope.clone(), along.clone()),
+            if self.deflected.is_imposed { OF_A_LOAD } else { OF_A_DISTANCE },
+        );
+        let data = self.data.iter().map(|d| d.measured).collect();
+        let by = self.deflected.along_by.clone();
+        Site { courses: self.one_by_one(), recorded: Some(Recorded { data, by, with_law: true }), ..site }
+    }
+
+    /// Its runs; nothing where one of them goes along several axes, which have no common course.
+    fn one_by_one(&self) -> Vec<Course> {
+        let courses = courses(self.data, self.deflected);
+        let is_along_one = |course: &Course| {
+            let mut axes = course.instants.iter().map(|instant| self.data[instant.data[0]].direction.axis);
+            let first = axes.next();
+            axes.all(|axis| Some(axis) == first)
+        };
+        if courses.iter().all(is_along_one) { courses } else { Vec::new() }
+    }
+
+    /// How fast the load was changed to what it is, N/s; nothing where that is always the same.
+    fn speeds(&self) -> Option<Vec<f64>> {
+        let mut speeds = Before::of(self.data).speeds(self.data)?;
+        if self.deflected.is_imposed {
+            for (i, (speed, d)) in speeds.iter_mut().zip(self.data).enumerate() {
+                // m/s over m/N, the way the displacement points
+                let slope = self.deflected.slope[i] * f64::from(d.direction.sign);
+                *speed = if slope == 0.0 { 0.0 } else { *speed / slope };
+            }
+        }
+        Some(self.deflected.as_driven(&speeds))
+    }
+
     /// Laws that change the deflection by a share of it.
-    fn shares(&self, known: &[f64]) -> Vec<Site> {
-        let data = self.data;
+    fn shares(&self) -> Vec<Site> {
+        let (data, deflected) = (self.data, self.deflected);
         let before = Before::of(data);
         let share = |part: Part, variable: SiteVariable, weights: Vec<f64>, values: Vec<f64>, forms| Site {
             location: Location::Part(part),
@@ -256,35 +275,47 @@ impl Recording<'_> {
             forms,
             rare: &[],
         };
-        let own = || known.to_vec();
+        let own = || deflected.read.clone();
         let mut sites = Vec::new();
-        if data.iter().any(|d| d.drive() < 0.0) && data.iter().any(|d| d.drive() > 0.0) {
+        let loads: Vec<f64> = (0..data.len()).map(|i| deflected.signed_load(i)).collect();
+        if loads.iter().any(|load| *load < 0.0) && loads.iter().any(|load| *load > 0.0) {
             // what is softer one way may be so either way
             for (sign, variable) in [(1.0, LawVariable::AlongPositive), (-1.0, LawVariable::AlongNegative)] {
-                let values = data.iter().map(|d| sign * d.drive()).collect();
+                let values = loads.iter().map(|load| sign * load).collect();
                 sites.push(share(Part::Rod, SiteVariable::OfFile(variable), own(), values, OF_A_SIDE));
             }
         }
-        if before.loads(data).is_some() {
+        if !deflected.is_imposed && before.loads(data).is_some() {
             let variable = SiteVariable::OfFile(LawVariable::LoadBefore);
             let values = before.load.iter().map(|load| load.abs()).collect();
             sites.push(share(Part::Rod, variable, own(), values, OF_A_LOAD));
         }
-        if let Some(speeds) = before.speeds(data) {
+        if let Some(speeds) = self.speeds() {
             let variable = SiteVariable::OfFile(LawVariable::LoadingSpeed);
             sites.push(share(Part::Rod, variable, own(), speeds, OF_A_SPEED));
         }
         if let (Some(wait), Some(_)) = (&before.wait, before.waits()) {
             let variable = SiteVariable::OfFile(LawVariable::SinceChange);
-            let changes = before.changes(data, known);
-            sites.push(share(Part::Slide, variable, changes, wait.clone(), FADING));
-            sites.push(share(Part::Rod, variable, own(), wait.clone(), FADING));
+            let wait = deflected.as_driven(wait);
+            sites.push(share(Part::Slide, variable, self.changes(&before), wait.clone(), FADING));
+            sites.push(share(Part::Rod, variable, own(), wait, FADING));
         }
         for common in self.common() {
             let site = share(Part::Rod, common.variable, own(), common.values, common.forms);
             sites.push(Site { courses: common.courses, ..site });
         }
         sites
+    }
+
+    /// How far each sensor's place was displaced between the reading before and this one, m.
+    fn changes(&self, before: &Before) -> Vec<f64> {
+        let Deflected { slope, driven, .. } = self.deflected;
+        let changes = before.changes(self.data, &self.deflected.read);
+        let beside = |(i, &own): (usize, &usize)| match own == i || slope[own] == 0.0 {
+            true => changes[i],
+            false => slope[i] / slope[own] * changes[own],
+        };
+        driven.iter().enumerate().map(beside).collect()
     }
 
     /// Laws that add to all channels, each with its own size.

@@ -12,6 +12,15 @@ const EXPONENTS: [(f64, &str, &str); 3] = [
     (2.0, "2", "that of a deflection to second order in the load"),
     (3.0, "3", "that of a spring with a cubic term (Duffing)"),
 ];
+/// The same over the deflection, of what resists it.
+const EXPONENTS_OF_DEFLECTION: [(f64, &str, &str); 2] = [
+    (
+        1.5,
+        "3/2",
+        "that of the force of a Hertzian contact over its approach (K. L. Johnson, Contact Mechanics, 1985, ch. 4)",
+    ),
+    (3.0, "3", "that of a spring with a cubic term (Duffing)"),
+];
 /// An exponent is known well enough for a remark within so much.
 const KNOWN: f64 = 0.15;
 
@@ -19,14 +28,21 @@ const KNOWN: f64 = 0.15;
 pub fn remark(law: &Law) -> Option<String> {
     if let Some((FormConstant::Exponent, p)) = &law.constant {
         let half = 0.5 * (p.high - p.low);
-        let is_load = ["N", "N·m"].contains(&law.site.variable.unit);
-        if !is_load || half > KNOWN * p.value {
+        let known: &[_] = match law.site.variable.symbol {
+            "F" | "M" => &EXPONENTS,
+            "u" => &EXPONENTS_OF_DEFLECTION,
+            _ => &[],
+        };
+        if half > KNOWN * p.value {
             return None;
         }
-        let near = EXPONENTS.iter().find(|(exponent, ..)| p.low <= *exponent && *exponent <= p.high)?;
+        let near = known.iter().find(|(exponent, ..)| p.low <= *exponent && *exponent <= p.high)?;
         return Some(format!("The exponent {:.2} ± {half:.2} agrees with {}: {}.", p.value, near.1, near.2));
     }
     let remark = match (law.form, law.memory, law.site.variable.symbol) {
+        (_, Memory::Lag, "u") => {
+            "A first-order lag of the deflection is what a spring bears behind a dashpot (Maxwell)."
+        }
         (_, Memory::Lag, _) => {
             "A first-order lag is what a spring with a dashpot beside it does (Kelvin and Voigt)."
         }
@@ -61,6 +77,9 @@ pub fn remark(law: &Law) -> Option<String> {
         }
         (Form::Threshold, _, "F" | "M") => {
             "A slope from one load on is what a contact does that opens or closes there."
+        }
+        (Form::Threshold, _, "u") => {
+            "A slope from one deflection on is what something does that is touched there."
         }
         (Form::Saturation, _, "F" | "M") => {
             "Growth up to one load is what a part does that comes to a stop there."

@@ -13,8 +13,8 @@ pub fn written(law: &Law, from: &str) -> Option<RodLaw> {
     let is_its =
         |own: &LawVariable| own.is_at(&place) && SiteVariable::OfFile(*own).measure() == law.site.variable;
     let variable = LawVariable::ALL.into_iter().find(is_its)?;
-    // of the rod's file a newton depends on the load alone, and a share on all else
-    if place == RodLawPlace::Rod && (variable == LawVariable::Load) != (law.site.result.unit == "N") {
+    // of the rod's file a newton depends on load or deflection, and a share on all else
+    if place == RodLawPlace::Rod && variable.adds_load() != (law.site.result.unit == "N") {
         return None;
     }
     // functions of a variable with two signs are odd

@@ -40,14 +40,19 @@ fn the_load_cell_of_nist_is_quadratic_in_its_load() {
 
 /// A rod with a joint and a bend, loaded up and down along each axis, at times and temperatures.
 fn up_and_down() -> (Readings, Rod) {
-    let mut text = "axis,load_n,phase,time_s,temperature_c,dx_um,dy_um,dz_um\n".to_owned();
+    up_and_down_with("", |_, _| "1,2,3".to_owned())
+}
+
+/// The same with a header, and what is read under a load along an axis.
+fn up_and_down_with(header: &str, read: impl Fn(&str, f64) -> String) -> (Readings, Rod) {
+    let mut text = format!("{header}axis,load_n,phase,time_s,temperature_c,dx_um,dy_um,dz_um\n");
     let mut time = 0.0;
     for axis in ["x", "y", "z"] {
         for (k, load) in [2.0, 3.0, 6.0, 7.0, 10.0, 7.0, 6.0, 3.0, 2.0].into_iter().enumerate() {
             let phase = if k < 5 { "load" } else { "unload" };
             time += 20.0 + 7.0 * load;
             let temperature = 20.0 + (time / 90.0f64).sin();
-            text += &format!("{axis},{load},{phase},{time},{temperature},1,2,3\n");
+            text += &format!("{axis},{load},{phase},{time},{temperature},{}\n", read(axis, load));
         }
     }
     let rod =
@@ -125,6 +130,65 @@ fn the_library_is_a_part_of_the_grammar() {
     }
     let known: BTreeSet<&str> = POINTS.iter().map(|point| point.0).chain(NO_POINTS).collect();
     assert_eq!(known, registry::ALL.iter().map(|own| own.effect.name).collect());
+}
+
+/// What they are where the displacement is imposed, and the load is what changes.
+const POINTS_IMPOSED: [(&str, &str, &str, Form, bool); 8] = [
+    ("stiffness_scale", "rod", "load", Form::Polynomial(1), false),
+    ("nonlinear_stiffness", "rod", "load", Form::Polynomial(3), false),
+    ("friction", "rod", "deflection along the load", Form::Step, true),
+    ("root_compliance", "root", "moment", Form::Polynomial(1), false),
+    ("joint_compliance", "sleeve", "moment", Form::Polynomial(1), false),
+    ("creep", "rod", "time since the load was changed", Form::Logarithm, false),
+    ("thermal_softening", "rod", "temperature above the lowest", Form::Polynomial(1), false),
+    ("thermal_drift", "sensors", "temperature above the lowest", Form::Polynomial(1), false),
+];
+
+#[test]
+fn an_imposed_displacement_has_the_same_grammar() {
+    let along = |axis: &str, load: f64| match axis {
+        "x" => format!("{},,", 10.0 * load),
+        "y" => format!(",{},", 60.0 * load),
+        _ => format!(",,{}", 50.0 * load),
+    };
+    let (readings, rod) = up_and_down_with("# driven = \"displacement\"\n", along);
+    let (model, _) = RigModel::new(&readings, Some(&rod)).unwrap();
+    let all = sites(&model, &DVector::zeros(model.data.len()));
+    let waits = |site: &Site| [1.0, 10.0, 60.0, 600.0].map(|t0| t0 / site.largest());
+    for (effect, place, variable, form, sides) in POINTS_IMPOSED {
+        let point = GrammarPoint { place, variable, form, sides };
+        let constants: Vec<f64> = match form {
+            Form::Step => vec![0.0],
+            _ => all.iter().filter(|site| site.variable.name == variable).flat_map(waits).collect(),
+        };
+        let own = model.candidates.iter().enumerate().filter(|(_, own)| own.effect.name == effect);
+        let most = own
+            .map(|(index, own)| model.columns(&[own.neutral(index)], 0))
+            .map(|columns| likeness(&all, point, &constants, &columns))
+            .fold(0.0, f64::max);
+        assert!(most > 1.0 - 1e-6, "{effect}, {place} over {variable}: {most}");
+    }
+}
+
+/// The sensor at the tip reads the deflection where the load acts, whether or not its place is
+/// stated; one elsewhere does not, but has it of the same instant.
+#[test]
+fn a_tip_that_is_stated_is_the_tip() {
+    let rod = Rod::from_toml("rod", include_str!("../../../../../rods/5.toml")).unwrap();
+    for tip in ["", "675", "674.9999999"] {
+        let rows: String = (1..=5).map(|k| format!("z,{k},{tip},{0}\nz,{k},410,{k}\n", 2 * k)).collect();
+        let text = format!("axis,load_n,read_station_mm,dz_um\n{rows}");
+        let readings = Readings::from_text("f", &text).unwrap();
+        let (model, _) = RigModel::new(&readings, Some(&rod)).unwrap();
+        let all = sites(&model, &DVector::zeros(model.data.len()));
+        let site = all.iter().find(|site| site.variable.symbol == "u").unwrap();
+        let by = &site.recorded.as_ref().unwrap().by;
+        for (i, datum) in model.data.iter().enumerate() {
+            let (tip, sign) = by[i].unwrap();
+            assert!(sign == 1.0 && model.data[tip].row == 2 * datum.row.div_ceil(2) - 1, "{i}: {tip}");
+            assert!((site.values[i] / model.data[tip].predicted - 1.0).abs() < 1e-9);
+        }
+    }
 }
 
 const JOINT: &str = "

@@ -11,6 +11,7 @@ mod finding;
 mod happened;
 mod laws;
 mod level;
+mod loose;
 mod next;
 mod recorded;
 mod sensors;

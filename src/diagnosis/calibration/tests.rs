@@ -4,6 +4,7 @@
 mod another_rod;
 mod changed;
 mod changing;
+mod coarse_angles;
 mod columns;
 mod descriptions;
 mod evidence;

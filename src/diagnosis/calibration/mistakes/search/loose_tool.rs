@@ -23,6 +23,14 @@ const FITTED: usize = 3;
 /// Base, tip and links take up a part of it, and less of the rest each time.
 const ROUNDS: usize = 5;
 
+/// Of each row, in {W}.
+struct Resting {
+    /// From its point to its tip, m.
+    off: Vec<Vector3<f64>>,
+    /// How much of that is where the tool rests, m.
+    displaced: Vec<Vector3<f64>>,
+}
+
 impl MistakeSearch<'_> {
     /// The best score of a tool that is loose, in place of a mistake.
     pub fn loose_tool(&self, from: &FittedDraft) -> Option<f64> {
@@ -32,7 +40,7 @@ impl MistakeSearch<'_> {
         let body = &self.bodies[from.thin.body];
         let lines = SIDES.iter().filter_map(|line| {
             let line = Vector3::from(*line);
-            let (off, displaced) = self.resting(&from.thin, &from.fit, &line)?;
+            let Resting { off, displaced } = self.resting(&from.thin, &from.fit, &line)?;
             let left: Vec<f64> = off.iter().zip(&displaced).map(|(off, by)| (off - by).norm()).collect();
             Some((density(&left, t_scale(&left, f64::EPSILON * body.reach)), line))
         });
@@ -47,8 +55,8 @@ impl MistakeSearch<'_> {
         let body = &self.bodies[from.thin.body];
         let (mut thin, mut fit) = (from.thin.clone(), from.fit.clone());
         for _ in 0..ROUNDS {
-            let (_, displaced) = self.resting(&thin, &fit, line)?;
-            for (at, by) in displaced.iter().enumerate() {
+            let resting = self.resting(&thin, &fit, line)?;
+            for (at, by) in resting.displaced.iter().enumerate() {
                 thin.seen[at] += thin.devices[thin.group[at]].rotation.tr_mul(by);
             }
             fit = fit_from(&thin, body, &fit, from.fit.rough)?;
@@ -56,13 +64,8 @@ impl MistakeSearch<'_> {
         Some(self.scored(from.steps.clone(), thin, fit).score + LOOSE)
     }
 
-    /// From each row's point to its tip, and how much of that is where the tool rests, in {W}.
-    fn resting(
-        &self,
-        thin: &Draft,
-        fit: &Fit,
-        line: &Vector3<f64>,
-    ) -> Option<(Vec<Vector3<f64>>, Vec<Vector3<f64>>)> {
+    /// Where a tool that is pressed along a line of {T} rests, as the rows say in the middle.
+    fn resting(&self, thin: &Draft, fit: &Fit, line: &Vector3<f64>) -> Option<Resting> {
         let body = &self.bodies[thin.body];
         let off = fit.offsets(thin, body);
         let held = (0..thin.len()).map(|at| {
@@ -74,6 +77,6 @@ impl MistakeSearch<'_> {
         let in_tool: Vec<Vector3<f64>> = held.iter().zip(&off).map(|(held, off)| held.tr_mul(off)).collect();
         let middle = |axis: usize| median(&in_tool.iter().map(|off| off[axis]).collect::<Vec<_>>());
         let a = Vector3::new(middle(0)?, middle(1)?, middle(2)?);
-        Some((off, held.iter().map(|held| held * a).collect()))
+        Some(Resting { off, displaced: held.iter().map(|held| held * a).collect() })
     }
 }

@@ -5,8 +5,7 @@ use nalgebra::Vector3;
 use super::super::model::CalibrationModel;
 use super::super::model::entry::linear;
 use super::{
-    CalibrationEffect, Context, Entry, Transfer, first, lack, no_event, out_of_the_points, own_parameters,
-    single,
+    CalibrationEffect, Context, Entry, Transfer, first, no_event, out_of_the_points, own_parameters, single,
 };
 use crate::inference::{Effect, Finding, Kind, Location, NotTestable, Part, Reported, WrittenTo};
 
@@ -39,9 +38,8 @@ pub static TRACKER_LAG: CalibrationEffect = CalibrationEffect {
     event: no_event,
 };
 
-fn lags(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+fn lags(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
     if !context.is_tracked() {
-        lacks.push(lack(&TRACKER_LAG, "no tracker saw the points"));
         return Vec::new();
     }
     let rows = &context.recording.rows;

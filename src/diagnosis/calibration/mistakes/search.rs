@@ -58,8 +58,8 @@ pub(super) struct FittedDraft {
     /// That of the volume which the recorded angles span: with sockets angles of a smaller unit
     /// scatter less, and say nothing by it.
     volume: f64,
-    /// By what a change of units has made lengths of each row smaller, or 1: they scatter less by as
-    /// much, and say nothing by it.
+    /// By what a change of units has made lengths of each row smaller, or 1: they scatter less by
+    /// as much, and say nothing by it.
     shrunk: Vec<f64>,
 }
 

@@ -33,6 +33,9 @@ pub enum Limitation {
     NarrowJoint(usize, f64),
     /// A joint, from 0, whose axis the target lies on: so far beside it at most, m.
     OnAxis(usize, f64),
+    /// Joint angles that are written to this many degrees, whose rounding alone scatters the tip by
+    /// so much per coordinate, m.
+    CoarseAngles(f64, f64),
     /// A clamp or placement that scatters far more than the others: its name, its scatter of a
     /// coordinate and that of the others in the middle, m.
     NoisyGroup(String, f64, f64),
@@ -115,6 +118,12 @@ impl fmt::Display for Limitation {
                  Offset the tool.",
                 joint + 1,
                 lever / MM
+            ),
+            Limitation::CoarseAngles(step, tip) => write!(
+                f,
+                "Joint angles are written to {step}°: that alone scatters the tip by {} µm per coordinate. Write more \
+                 digits.",
+                significant(tip / UM, 2)
             ),
             Limitation::NoisyGroup(name, own, others) => write!(
                 f,

@@ -2,6 +2,7 @@
 
 pub mod arrival;
 pub mod beside;
+pub mod coarse_angles;
 pub mod forward_model;
 pub mod hung;
 pub mod leverage;
@@ -14,6 +15,7 @@ pub mod tails;
 
 use self::arrival::unknown_arrival;
 use self::beside::{calibrated_beside, unequal};
+use self::coarse_angles::coarse_angles;
 use self::hung::{BesideMasses, beside_hidden_masses, may_bend, may_hide, with_rivals};
 use self::limits::{far_out, limits, noisy};
 use self::memory::check_memory;
@@ -159,6 +161,7 @@ pub fn diagnose_calibrated<'c>(
     let mut limits = limits(&context, &model.calibration, &evidence);
     limits.extend(look.scatter.iter().flat_map(|noise| noisy(campaign, noise)));
     limits.extend(arrival);
+    limits.extend(coarse_angles(&context, diagnosis.noise));
     limits.extend(names);
     limits.extend(unknown_sides(&context, &diagnosis));
     limits.extend(far_out(&context, &diagnosis, &look.far_out));

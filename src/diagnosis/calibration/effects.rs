@@ -25,6 +25,7 @@ mod per_torque;
 pub(super) mod play;
 pub(super) mod procedure;
 pub mod registry;
+pub(super) mod tracker;
 
 use nalgebra::Vector3;
 

@@ -37,7 +37,8 @@ mod waves;
 
 use nalgebra::{Matrix3, Vector3};
 
-use self::curve::{AXES, LEAST_TORQUE, MOST, SIDES, SIZE, TURN, angle_of, cosine, curve, scaled, vectors};
+pub(super) use self::curve::SIDES;
+use self::curve::{AXES, LEAST_TORQUE, MOST, SIZE, TURN, angle_of, cosine, curve, scaled, vectors};
 use super::model::Context;
 use super::model::entry::{Entry, linear};
 use super::model::law::Frame;

@@ -4,6 +4,7 @@
 mod another_rod;
 mod changed;
 mod changing;
+mod coarse_angles;
 mod columns;
 mod descriptions;
 mod evidence;
@@ -11,6 +12,7 @@ mod finding;
 mod happened;
 mod laws;
 mod level;
+mod loose;
 mod next;
 mod recorded;
 mod sensors;

@@ -13,11 +13,12 @@ use super::loads::{GRAVITY_DIRECTION, PAYLOAD_MASS, ROD_MASS, ROD_STIFFNESS, TIP
 use super::mounting::{BASE_SHIFT, TOOL_SHIFT};
 use super::play::{BACKLASH, JOINT_FRICTION};
 use super::procedure::{READBACK_LAG, THERMAL_DRIFT};
+use super::tracker::TRACKER_LAG;
 use super::{CalibrationEffect, Context, Entry, mistakes};
 use crate::inference::{Effect, NotTestable};
 
 /// All of them, as they are listed wherever they are.
-pub static ALL: [&CalibrationEffect; 26] = [
+pub static ALL: [&CalibrationEffect; 27] = [
     &ROD_STIFFNESS,
     &TIP_MASS,
     &ROD_MASS,
@@ -36,6 +37,7 @@ pub static ALL: [&CalibrationEffect; 26] = [
     &WRIST_COUPLING,
     &TRANSMISSION_ERROR,
     &READBACK_LAG,
+    &TRACKER_LAG,
     &CLAMP_POSE,
     &CLAMP_SHIFT,
     &SOCKET_SHIFT,

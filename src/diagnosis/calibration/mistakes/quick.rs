@@ -21,7 +21,7 @@ mod tether;
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-pub(super) use self::density::{density, t_scale, weight_of};
+pub(super) use self::density::{density, ln_volume, t_scale, weight_of};
 pub(super) use self::loaded_robot::LoadedRobot;
 use self::means::{minus_means, without_means};
 use self::priors::{moved, prior_precision, sizes};

@@ -13,6 +13,7 @@ pub mod elsewhere;
 mod extended;
 pub mod fixtures;
 mod left_to_effects;
+mod loose_tool;
 mod moved_fixtures;
 pub mod part;
 mod partial;
@@ -57,6 +58,9 @@ pub(super) struct FittedDraft {
     /// That of the volume which the recorded angles span: with sockets angles of a smaller unit
     /// scatter less, and say nothing by it.
     volume: f64,
+    /// By what a change of units has made lengths of each row smaller, or 1: they scatter less by
+    /// as much, and say nothing by it.
+    shrunk: Vec<f64>,
 }
 
 /// A change that was found necessary.
@@ -102,10 +106,17 @@ impl MistakeSearch<'_> {
             // no physics makes a first guess another one
             let is_guess =
                 |state: &FittedDraft| state.steps.last().is_some_and(|step| self.change(step).is_guess());
+            // physics that explains what one change does competes with all others too
+            let mut of_effects = f64::NEG_INFINITY;
             let is_next = |state: &&FittedDraft| {
-                self.is_better(state, &best)
-                    && !self.has_failed(state)
-                    && (is_guess(state) || state.score - self.of_effects(state, &best, &tried) > ODDS)
+                if !self.is_better(state, &best) || self.has_failed(state) {
+                    return false;
+                }
+                if is_guess(state) {
+                    return true;
+                }
+                of_effects = self.of_effects(state, &best, &tried).max(of_effects);
+                state.score - of_effects > ODDS
             };
             let next = tried.iter().find(is_next);
             let next = match next {

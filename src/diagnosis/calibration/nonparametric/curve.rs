@@ -19,7 +19,7 @@ pub(super) const TURN: f64 = 100e-6;
 pub(super) const LEAST_TORQUE: f64 = 0.1;
 /// Lines through the middle of a cube: of its faces, edges and corners. None is farther than 27°
 /// from any other line.
-pub(super) const SIDES: [[f64; 3]; 13] = [
+pub(in super::super) const SIDES: [[f64; 3]; 13] = [
     [1.0, 0.0, 0.0],
     [0.0, 1.0, 0.0],
     [0.0, 0.0, 1.0],

@@ -146,3 +146,29 @@ fn a_tracker_that_warms_is_told_from_a_base_that_drifts_or_said_beside_it() {
     let drifting = explained(&|row, tip| tip + at * (4e-5 * warmth(row)));
     assert_eq!(drifting[0], base);
 }
+
+/// A tracker whose filter has not settled shows points on the straight way from the ones before: no
+/// joints that were read too early, whose ways are arcs; and those keep their name.
+#[test]
+fn points_that_lag_are_no_angles_that_were_read_too_early() {
+    let share = 2e-4;
+    let last = std::cell::Cell::new(None);
+    let filtered = tracked(120, &|_, tip| {
+        let before: Vector3<f64> = last.replace(Some(*tip)).unwrap_or(*tip);
+        tip + (before - tip) * share
+    });
+    let (names, left, _) = diagnosed(&filtered, Mode::None);
+    assert_eq!((names, left), (vec!["tracker_lag"], None));
+    let calibration = calibrate(&filtered, Mode::None, &Options::default()).unwrap();
+    let context = Context::new(&filtered, &calibration).unwrap();
+    let settled = tracked(120, &|_, tip| *tip);
+    let late = |joints: std::ops::Range<usize>, share: f64| {
+        let by = |row: usize| {
+            let there = &context.configurations[row];
+            joints.clone().map(|j| there.tip_jacobian[j] * (share * there.step[j])).sum()
+        };
+        diagnosed(&recorded(&settled, &by, 0.0, 1), Mode::None).0
+    };
+    assert_eq!(late(1..2, share), ["readback_lag"]);
+    assert_eq!(late(0..6, share), ["readback_lag"]);
+}

@@ -36,7 +36,17 @@ pub fn t_scale(lengths: &[f64], least: f64) -> f64 {
 /// Ln of the density of all rows, as many as count.
 pub fn density(lengths: &[f64], scale: f64) -> f64 {
     let ln_density = |r: &f64| -3.0 * scale.ln() - 0.5 * (NU + 3.0) * ((r / scale).powi(2) / NU).ln_1p();
-    let sum: f64 = lengths.iter().map(ln_density).sum();
-    let count = lengths.len().max(1) as f64;
-    sum / count * count.min(MOST_ROWS) * ROW
+    of_rows(lengths.iter().map(ln_density).collect())
+}
+
+/// Ln of the volume of what was recorded where each row's lengths are multiplied by a factor of its
+/// own: the density of numbers in another unit is that of the lengths times this.
+pub fn ln_volume(factors: &[f64]) -> f64 {
+    of_rows(factors.iter().map(|factor| 3.0 * factor.ln()).collect())
+}
+
+/// What all rows say together, as many as count.
+fn of_rows(said: Vec<f64>) -> f64 {
+    let count = said.len().max(1) as f64;
+    said.iter().sum::<f64>() / count * count.min(MOST_ROWS) * ROW
 }

@@ -22,12 +22,13 @@ const FORCE: (f64, [f64; 2]) = (-3.0, [0.5, 2.0]);
 impl MistakeSearch<'_> {
     /// The best score of physics that acts on what the last change of `changed` acts on: small
     /// moves, places of clamps where their frames are changed, fixtures that moved and a tip that
-    /// slipped where some rows are changed, another contact force.
+    /// slipped where some rows are changed, another contact force, a loose tool.
     pub fn of_effects(&self, changed: &FittedDraft, from: &FittedDraft, tried: &[FittedDraft]) -> f64 {
         let small = tried.iter().filter(|state| !self.is_far(state)).map(|state| state.score);
         let others = [
             self.slipped(changed, from),
             self.another_force(changed, from),
+            self.loose_tool(from),
             // that explains alike, not less: the heavier tip has a number of its own to choose
             changed.steps.last().and_then(|step| self.heavier_tip(step, from)).map(|score| score - ODDS),
         ];

@@ -2,12 +2,15 @@
 //!
 //! ```text
 //! score = ln density of the residuals + ln agreement with the stated base and tip
-//!         + ln prior of the changes + ln volume of the angles
+//!         + ln prior of the changes + ln volume of the angles + ln volume of the positions
 //! ```
+//!
+//! The volumes are those of what was recorded: numbers of another unit scatter less by their factor
+//! and are no better for it.
 
-use super::super::draft::{Draft, DraftChange};
+use super::super::draft::{Draft, DraftChange, Rows};
 use super::super::motion::moved;
-use super::super::quick::Fit;
+use super::super::quick::{Fit, ln_volume};
 use super::{FittedDraft, MistakeSearch, SearchStep};
 use crate::statistics::median;
 use crate::units::{DEG, MM};
@@ -36,7 +39,27 @@ impl MistakeSearch<'_> {
             false => guess(&thin, &fit, reach, most),
         };
         let volume = fit.log_volume(&thin, &self.bodies[thin.body]);
-        FittedDraft { score: fit.log_likelihood + guess + prior + volume, steps, thin, fit, guess, volume }
+        let shrunk = self.shrunk(&steps, &thin);
+        let score = fit.log_likelihood + guess + prior + volume + ln_volume(&shrunk);
+        FittedDraft { score, steps, thin, fit, guess, volume, shrunk }
+    }
+
+    /// By what the steps make lengths of each row smaller. Larger numbers are no better either, but
+    /// no file is known to less than some scatter, below which nothing is compared.
+    fn shrunk(&self, steps: &[SearchStep], thin: &Draft) -> Vec<f64> {
+        let mut shrunk = vec![1.0; thin.len()];
+        for step in steps {
+            let (rows, change) = match self.change(step) {
+                DraftChange::Within(rows, change) => (Some(rows), &**change),
+                change => (None, change),
+            };
+            let DraftChange::Seen(matrix) = change else { continue };
+            let factor = matrix.determinant().abs().cbrt().min(1.0);
+            let is_within =
+                |at: usize| rows.is_none_or(|rows: &Rows| rows.contain(thin.rows[at], thin.group[at]));
+            (0..thin.len()).filter(|&at| is_within(at)).for_each(|at| shrunk[at] *= factor);
+        }
+        shrunk
     }
 
     /// Ln of how rare these changes are.

@@ -34,31 +34,34 @@ impl MistakeSearch<'_> {
 
     /// True where what differs between two states lies so many times nearer, and is enough.
     fn is_nearer(&self, after: &FittedDraft, before: &FittedDraft) -> bool {
-        // in what the angles span before
-        let unit = ((before.volume - after.volume) / (3 * after.thin.len().max(1)) as f64).exp();
-        let sure = 3.0 * after.fit.scale * unit;
-        let touched: Vec<(f64, f64)> = pairs(before, after)
-            .into_iter()
-            .map(|(old, new)| (old, new * unit))
-            .filter(|(old, new)| (old - new).abs() > sure)
-            .collect();
+        // in what the angles span before, and in the units of before, where a robot leaves so much
+        let spanned = ((before.volume - after.volume) / (3 * after.thin.len().max(1)) as f64).exp();
+        let is_of_robot = !self.has_failed(before);
+        let units = in_units_of(before, after).map(|unit| if is_of_robot { spanned * unit } else { spanned });
+        let units: Vec<f64> = units.collect();
+        let new: Vec<f64> = after.fit.residuals.iter().zip(&units).map(|(new, unit)| new * unit).collect();
+        let touched = pairs(before, after)
+            .map(|(at, old)| (old, new[at], 3.0 * after.fit.scale * units[at]))
+            .filter(|(old, new, sure)| (old - new).abs() > *sure)
+            .map(|(old, new, _)| (old, new));
         // a part of the rows may be a small one
         let is_part = (after.steps.iter())
             .any(|step| matches!(step, SearchStep::Part(..)) && !before.steps.contains(step));
         let share = if is_part { 0.0 } else { TOUCHED.0 };
         let least = (share * after.thin.len() as f64).max(TOUCHED.1 as f64);
-        let (old, new): (Vec<f64>, Vec<f64>) = touched.into_iter().unzip();
-        let (Some(old_middle), Some(new_middle)) = (median(&old), median(&new)) else { return false };
+        let (touched_old, touched_new): (Vec<f64>, Vec<f64>) = touched.unzip();
+        let middles = median(&touched_old).zip(median(&touched_new));
+        let Some((old_middle, new_middle)) = middles else { return false };
         // what a part of the rows holds makes them as good as the others
-        let is_good =
-            !is_part || median(&after.fit.residuals).is_some_and(|all| new_middle < NEARER * all * unit);
-        old.len() as f64 >= least && old_middle > NEARER * new_middle && is_good
+        let is_good = !is_part || median(&new).is_some_and(|all| new_middle < NEARER * all);
+        touched_old.len() as f64 >= least && old_middle > NEARER * new_middle && is_good
     }
 
     /// One change of a state against the state without it.
     pub(super) fn judged(&self, best: &FittedDraft, k: usize) -> Option<AdoptedStep> {
         let rest = self.without(best, k)?;
-        let square: f64 = pairs(&rest, best).iter().map(|(old, new)| old * old - new * new).sum();
+        let left = &best.fit.residuals;
+        let square: f64 = pairs(&rest, best).map(|(at, old)| old * old - left[at] * left[at]).sum();
         let explains = (square / best.thin.len().max(1) as f64).max(0.0).sqrt();
         let log_odds = (best.score - rest.score).min(700.0);
         let step = best.steps[k].clone();
@@ -95,9 +98,14 @@ impl MistakeSearch<'_> {
     }
 }
 
-/// Residuals of the rows that two states have in common.
-fn pairs(before: &FittedDraft, after: &FittedDraft) -> Vec<(f64, f64)> {
-    let of_row = |row: usize| before.thin.rows.binary_search(&row).ok().map(|at| before.fit.residuals[at]);
-    let rows = after.thin.rows.iter().zip(&after.fit.residuals);
-    rows.filter_map(|(&row, &new)| Some((of_row(row)?, new))).collect()
+/// Where the rows that two states have in common are in `after`, with their residuals before.
+fn pairs<'a>(before: &'a FittedDraft, after: &'a FittedDraft) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let known = |row| before.thin.rows.binary_search(row).ok().map(|at| before.fit.residuals[at]);
+    after.thin.rows.iter().enumerate().filter_map(move |(at, row)| Some((at, known(row)?)))
+}
+
+/// What a length of each row of `after` is in the unit that it had before.
+fn in_units_of<'a>(before: &'a FittedDraft, after: &'a FittedDraft) -> impl Iterator<Item = f64> + 'a {
+    let old = |row| before.thin.rows.binary_search(row).map_or(1.0, |at| before.shrunk[at]);
+    after.thin.rows.iter().zip(&after.shrunk).map(move |(row, new)| old(row) / new)
 }

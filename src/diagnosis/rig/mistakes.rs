@@ -27,6 +27,7 @@ mod limits;
 mod lines;
 mod lookalikes;
 mod mended;
+mod needed;
 mod part;
 mod physics;
 mod possible;

@@ -1,10 +1,10 @@
 //! Readings and rod without their mistakes, and what is said of these.
 
 use super::lines::lines;
+use super::needed::NamedMistake;
 use super::part::Part;
 use super::possible::PossibleMistake;
 use super::rods::OtherRod;
-use super::search::NamedMistake;
 use crate::diagnosis::Suspicion;
 use crate::diagnosis::rig::effects::mistakes::{OFFSET_MISTAKE, ROD_MISTAKE, UNIT_MISTAKE};
 use crate::diagnosis::rig::recording::datum::{self, Datum};

@@ -12,11 +12,13 @@
 //! Everything is relative to the rod, so that units do not matter, and the density is that of the
 //! slopes as recorded, so that no rescaling is favoured.
 
+mod columns;
 mod far_off;
 mod mood;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3, Vector3};
 
+use self::columns::Columns;
 use self::far_off::{SINGLE_ANGLE, SINGLE_POINT, Solved};
 use self::mood::{MOODS, Mood};
 use super::lines::Line;
@@ -363,16 +365,4 @@ impl Seen<'_> {
         let solved = root.solve(&off);
         Some(Solved { log_density: -0.5 * off.dot(&solved) - log_root, root, solved })
     }
-}
-
-struct Columns {
-    shear: DVector<f64>,
-    joints: Vec<DVector<f64>>,
-    points: Vec<DVector<f64>>,
-    axes: Vec<DVector<f64>>,
-    channels: Vec<DVector<f64>>,
-    turns: Vec<DVector<f64>>,
-    /// Σ c·cᵀ of the whole rod, shear, joints, axes, channels and turns: the same for all moods.
-    squares: [DMatrix<f64>; 6],
-    own: DVector<f64>,
 }

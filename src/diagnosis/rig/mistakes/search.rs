@@ -3,9 +3,6 @@
 //! A beam search: one mistake, then a second beside each of the best, then a third. A combination
 //! is kept where it is a thousand times more probable than the one that it grew from.
 
-mod needed;
-
-pub(super) use self::needed::{ALIKE, NamedMistake};
 use super::lines::Line;
 use super::physics::{Physics, Seen, Verdict, View};
 use super::possible::PossibleMistake;
@@ -15,6 +12,8 @@ use crate::spatial::Axis;
 
 /// A mistake is named at these odds against all else, physics included: ln 1000.
 pub(in crate::diagnosis::rig) const ODDS: f64 = 6.907_755;
+/// Another mistake within these odds explains alike: ln 20.
+pub(super) const ALIKE: f64 = 2.995_732;
 /// A rod is never bent by more than this share of its length, and what it costs to say so: ln.
 const BENT: f64 = 0.05;
 const BENT_TOO_FAR: f64 = 15.0;
@@ -23,7 +22,7 @@ pub(in crate::diagnosis::rig) const RARE: f64 = -0.5;
 const MOST_MISTAKES: usize = 3;
 const BEAM: usize = 6;
 /// Share of the squares of the slopes that ordinary physics hardly leaves: 22 % rms.
-const IMPLAUSIBLE: f64 = 0.05;
+pub(super) const IMPLAUSIBLE: f64 = 0.05;
 /// A channel that shows less than this share of the largest deflection says nothing.
 const SHOWN: f64 = 0.03;
 
@@ -81,7 +80,7 @@ impl LinesOnRod<'_> {
 
     /// Share of the squares of the deflections that is left of some lines; the larger one of
     /// measured and expected counts, so that no unit is favoured.
-    fn left(&self, part: &[usize], expected: &[f64], log_scale: f64) -> f64 {
+    pub fn left(&self, part: &[usize], expected: &[f64], log_scale: f64) -> f64 {
         let factor = log_scale.exp();
         let (mut left, mut all) = (0.0, 0.0);
         for &k in part {
@@ -95,7 +94,7 @@ impl LinesOnRod<'_> {
 
     /// Share of the squares that is scatter about the lines: what does not follow the load, no
     /// factor cures.
-    fn scattered(&self, part: &[usize], expected: &[f64], log_scale: f64) -> f64 {
+    pub fn scattered(&self, part: &[usize], expected: &[f64], log_scale: f64) -> f64 {
         let all: f64 = part.iter().map(|&k| self.deflection(k, log_scale.exp() * expected[k]).powi(2)).sum();
         let scatter: f64 = part.iter().map(|&k| self.lines[k].fit.scatter.powi(2)).sum();
         if all > 0.0 { scatter / all } else { 0.0 }
@@ -128,7 +127,8 @@ impl LinesOnRod<'_> {
         verdict.log_evidence + RARE + mistake.log_prior < loose + ODDS
     }
 
-    fn seen<'s>(&'s self, physics: &'s Physics, relabelling: &Relabelling) -> Seen<'s> {
+    /// The lines with a relabelling undone, beside a rod.
+    pub fn seen<'s>(&'s self, physics: &'s Physics, relabelling: &Relabelling) -> Seen<'s> {
         let view = |line: &Line| {
             let (axis, channel) = (line.axis.index(), line.channel.index());
             View {
@@ -154,14 +154,16 @@ pub(super) struct MistakeSearch<'a> {
 }
 
 impl MistakeSearch<'_> {
-    fn physics(&self, relabelling: &Relabelling) -> Option<&Physics> {
+    /// What the rod then is; `None` where the readings cannot be on it.
+    pub fn physics(&self, relabelling: &Relabelling) -> Option<&Physics> {
         match relabelling.body {
             0 => Some(self.lines.base),
             number => self.bodies[number - 1].as_ref(),
         }
     }
 
-    fn combination(&self, mistakes: Vec<usize>) -> Option<Combination> {
+    /// Mistakes together, where what remains is near to what each of them allows.
+    pub fn combination(&self, mistakes: Vec<usize>) -> Option<Combination> {
         let relabelling = self.relabelling(&mistakes)?;
         if relabelling.body == 0 && !self.lines.is_possible {
             let score = f64::NEG_INFINITY;
@@ -182,9 +184,9 @@ impl MistakeSearch<'_> {
         if after.score.is_finite() { after.score - before.score } else { 0.0 }
     }
 
-    /// The mistakes, with what the readings and the rod become.
-    pub fn found(&self) -> Option<(Combination, Vec<NamedMistake>)> {
-        let base = self.combination(Vec::new())?;
+    /// Mistakes together that explain more than any fewer of them, the likeliest first.
+    pub fn likeliest(&self) -> Vec<Combination> {
+        let Some(base) = self.combination(Vec::new()) else { return Vec::new() };
         let mut best = base.score;
         let mut frontier = vec![base];
         let mut likeliest: Vec<Combination> = Vec::new();
@@ -214,10 +216,11 @@ impl MistakeSearch<'_> {
             likeliest.splice(0..0, next.iter().cloned());
             frontier = next;
         }
-        likeliest.into_iter().find_map(|combination| self.needed(combination))
+        likeliest
     }
 
-    fn without(&self, mistakes: &[usize]) -> Option<Combination> {
+    /// The same without regard to that.
+    pub fn without(&self, mistakes: &[usize]) -> Option<Combination> {
         self.scored(mistakes.to_vec(), self.relabelling(mistakes)?)
     }
 

@@ -47,8 +47,8 @@ pub struct Correction {
 }
 
 impl RigDiagnosis {
-    /// Rod and readings as corrected; `None` without a rod, where nothing was found and no number of
-    /// the rod's file moved, or where only the rod itself says what unit the readings have: its
+    /// Rod and readings as corrected; `None` without a rod, where nothing was found and no number
+    /// of the rod's file moved, or where only the rod itself says what unit the readings have: its
     /// compliance by such readings would be the file's own.
     ///
     /// # Errors

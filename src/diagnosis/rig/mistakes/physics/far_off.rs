@@ -2,7 +2,7 @@
 
 use nalgebra::{Cholesky, DVector, Dyn};
 
-use super::Columns;
+use super::columns::Columns;
 use crate::units::DEG;
 
 /// One thing far off, each as likely: ln of how likely, and how far.
@@ -74,15 +74,5 @@ impl Solved {
         let along = self.root.l_dirty().solve_lower_triangular(column)?.norm_squared();
         let grown = 1.0 + size * size * along;
         Some(self.log_density + 0.5 * (size * projection).powi(2) / grown - 0.5 * grown.ln())
-    }
-}
-
-impl Columns {
-    /// What gives way in bending mostly does so in torsion.
-    fn joints_both_ways(&self) -> Vec<DVector<f64>> {
-        self.joints
-            .chunks(2)
-            .map(|both| both.iter().fold(DVector::zeros(both[0].len()), |a, b| a + b))
-            .collect()
     }
 }

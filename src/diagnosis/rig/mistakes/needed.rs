@@ -1,11 +1,9 @@
 //! Which mistakes of a combination are needed, and cure what they act on.
 
-use super::{Combination, IMPLAUSIBLE, MistakeSearch, ODDS};
+use super::search::{ALIKE, Combination, IMPLAUSIBLE, MistakeSearch, ODDS};
 use crate::diagnosis::rig::effects::mistakes::{SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
 use crate::inference::Kind;
 
-/// Another mistake within these odds explains alike: ln 20.
-pub(in crate::diagnosis::rig::mistakes) const ALIKE: f64 = 2.995_732;
 /// What a key in another unit must leave at least: 60 % rms.
 const FAR_OFF: f64 = 0.36;
 /// And that a corrected recording may leave: a unit's factor stands for itself, a sign is one
@@ -16,7 +14,7 @@ const LEFT_BY_NAME: f64 = 0.15;
 const CURED: f64 = 0.25;
 
 /// A mistake that was found.
-pub(in crate::diagnosis::rig::mistakes) struct NamedMistake {
+pub(super) struct NamedMistake {
     /// Its number among the possible ones.
     pub number: usize,
     /// Ln of the odds against what there is without it.
@@ -30,9 +28,14 @@ pub(in crate::diagnosis::rig::mistakes) struct NamedMistake {
 }
 
 impl MistakeSearch<'_> {
+    /// The mistakes, with what the readings and the rod become.
+    pub(super) fn found(&self) -> Option<(Combination, Vec<NamedMistake>)> {
+        self.likeliest().into_iter().find_map(|combination| self.needed(combination))
+    }
+
     /// Those of a combination that are needed and cure what they act on: one that does not, does
     /// not speak against the others.
-    pub(super) fn needed(&self, mut best: Combination) -> Option<(Combination, Vec<NamedMistake>)> {
+    fn needed(&self, mut best: Combination) -> Option<(Combination, Vec<NamedMistake>)> {
         while !best.mistakes.is_empty() {
             let judged: Vec<Option<NamedMistake>> =
                 best.mistakes.iter().map(|&number| self.judged(&best, number)).collect();

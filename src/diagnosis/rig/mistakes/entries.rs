@@ -22,6 +22,7 @@ use super::part::Part;
 use super::possible::exact;
 use crate::diagnosis::rig::recording::columns::{columns, load_column};
 use crate::diagnosis::rig::recording::datum::Datum;
+use crate::diagnosis::rig::recording::resolution::resolution;
 use crate::inference::{Estimate, Key};
 use crate::rig::readings::LoadColumn;
 use crate::spatial::Axis;
@@ -66,6 +67,7 @@ struct LoadByReadings {
 
 /// Loads of single rows that all their readings contradict.
 pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Entry> {
+    let lines = &no_finer_than_the_display(data, lines);
     let mut line_of: Vec<Option<usize>> = vec![None; data.len()];
     for (k, line) in lines.iter().enumerate().filter(|(_, line)| line.data.len() >= LEAST) {
         line.data.iter().for_each(|&i| line_of[i] = Some(k));
@@ -175,6 +177,21 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
     let mut repeated = repeated.into_iter();
     found.retain(|_| !repeated.next().unwrap_or_default());
     if found.len() as f64 > (FEW * instants.len() as f64).max(1.0) { Vec::new() } else { found }
+}
+
+/// Lines whose readings scatter by rounding at least: a display that shows one number for most loads
+/// knows none of these.
+fn no_finer_than_the_display(data: &[Datum], lines: &[Line]) -> Vec<Line> {
+    let rounded = |channel: Axis| {
+        let step = resolution(data.iter().filter(|datum| datum.channel == channel));
+        step / 12f64.sqrt()
+    };
+    let rounded = Axis::ALL.map(rounded);
+    let mut lines = lines.to_vec();
+    for line in &mut lines {
+        line.fit.scatter = line.fit.scatter.max(rounded[line.channel.index()]);
+    }
+    lines
 }
 
 /// As it stands in a file: without what conversions leave in the last digits.

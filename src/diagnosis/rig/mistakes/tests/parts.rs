@@ -290,6 +290,26 @@ fn what_every_run_shows_of_a_load_is_no_slip_of_the_pen() {
     assert_eq!([with(&["2"]), with(&["1", "2", "3"])], [1, 0]);
 }
 
+/// A display of ten micrometres that shows as good as nothing of a load corrects none.
+#[test]
+fn a_display_that_hardly_moves_knows_no_load() {
+    let file = rod(ROD_5);
+    let mut wrong = Vec::new();
+    for seed in 0..40 {
+        let mut readings = recorded(&file, Bench::Full, seed);
+        let mut random = Random::seeded(seed, 1);
+        for row in &mut readings.rows {
+            row.load *= 0.1;
+            for y in row.offset.iter_mut().flatten() {
+                let shown = 0.1 * *y / UM + 5.6 * random.normal();
+                *y = 10.0 * UM * (shown / 10.0).round();
+            }
+        }
+        wrong.extend(found(&readings, Some(&file)).into_iter().map(|what| format!("{seed}: {what}")));
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
 /// Two weights in the wrong order: each of the two rows makes the line follow it, so that the other
 /// one may not be seen beside it.
 #[test]

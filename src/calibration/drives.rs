@@ -63,7 +63,7 @@ pub(super) fn priors(
 }
 
 /// No drive turns against its load; what a file says already may stay.
-pub(super) fn least(setup: &Setup, parameter: Parameter) -> f64 {
+pub(crate) fn least_value(setup: &Setup, parameter: Parameter) -> f64 {
     match parameter.compliant_joint() {
         Some(_) => setup.get(parameter).min(0.0),
         None => f64::NEG_INFINITY,

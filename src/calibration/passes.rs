@@ -206,7 +206,7 @@ impl<'a, 'c> Run<'a, 'c> {
     fn fit_options(&self) -> least_squares::Options {
         let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); self.problem().parameter_count()];
         for (bound, &parameter) in bounds.iter_mut().zip(self.free) {
-            bound.0 = drives::least(&self.start, parameter);
+            bound.0 = drives::least_value(&self.start, parameter);
         }
         least_squares::Options { priors: self.priors(), bounds, ..known_noise() }
     }

@@ -32,6 +32,7 @@ use self::rough::rough;
 use self::tether::{pull, pulled};
 use super::draft::{Draft, DraftChange};
 use crate::calibration::growth::log_volume;
+use crate::calibration::least_value;
 use crate::linalg::transposed_product;
 use crate::robot::{Parameter, ParameterGroup, Setup};
 use crate::spatial::{Pose, exponential};
@@ -110,6 +111,8 @@ fn refined<'a>(
     let sd = sizes(draft, body, &torque);
     let as_drawn = Setup::new(body.robot, Pose::IDENTITY, state.setup.tool);
     let nominal: Vec<f64> = body.free.iter().map(|&p| as_drawn.get(p)).collect();
+    let lowest: Vec<f64> = body.free.iter().map(|&p| least_value(&as_drawn, p)).collect();
+    let known = KnownNumbers { nominal: &nominal, lowest: &lowest, sd: &sd };
     let least = LEAST_SCALE * body.reach;
     let mut best: Option<(f64, f64, FitState, Vec<Vector3<f64>>)> = None;
     // rows that a mistake touches hardly count in the middle of a socket either
@@ -138,7 +141,7 @@ fn refined<'a>(
         }
         without_means(&mut block, draft, &weight);
         weight = lengths.iter().map(|length| weight_of(length / scale)).collect();
-        state = step(draft, body, &state, (&off, &lengths, scale), (&nominal, &sd), block)?;
+        state = step(draft, body, &state, (&off, &lengths, scale), &known, block)?;
         load(draft, body, &state, &mut torque, &mut deflection);
     }
     let (log_likelihood, scale, state, off) = best?;
@@ -153,13 +156,23 @@ fn refined<'a>(
     })
 }
 
+/// What is known of the free parameters beforehand.
+struct KnownNumbers<'a> {
+    nominal: &'a [f64],
+    /// No parameter is less. Drives that turned against their loads would explain gravity of the
+    /// other sign as well as it does itself.
+    lowest: &'a [f64],
+    /// Standard deviations about the nominal values.
+    sd: &'a [f64],
+}
+
 /// One Gauss–Newton step, by the columns of the state.
 fn step<'a>(
     draft: &Draft,
     body: &LoadedRobot,
     state: &FitState<'a>,
     (off, lengths, scale): (&[Vector3<f64>], &[f64], f64),
-    (nominal, sd): (&[f64], &[f64]),
+    known: &KnownNumbers,
     mut block: DMatrix<f64>,
 ) -> Option<FitState<'a>> {
     let (free, columns) = (body.free.len(), block.ncols());
@@ -171,16 +184,17 @@ fn step<'a>(
     }
     let mut normal = transposed_product(&block, &block);
     let mut gradient = block.tr_mul(&right);
-    let precision = prior_precision(sd, columns);
+    let precision = prior_precision(known.sd, columns);
     for (k, precision) in precision.iter().enumerate() {
         normal[(k, k)] += precision;
         // the tip has a ridge only: it is where it fits
         if k < free && body.free[k].group() != ParameterGroup::Tool {
-            gradient[k] += precision * (state.setup.get(body.free[k]) - nominal[k]);
+            gradient[k] += precision * (state.setup.get(body.free[k]) - known.nominal[k]);
         }
     }
     pull(draft, state, free, &mut normal, &mut gradient);
-    let change = normal.cholesky()?.solve(&gradient);
+    let room: Vec<f64> = (0..free).map(|k| state.setup.get(body.free[k]) - known.lowest[k]).collect();
+    let change = within_room(&normal, &gradient, &room)?;
     let mut next = state.clone();
     for (k, &parameter) in body.free.iter().enumerate() {
         next.setup.set(parameter, state.setup.get(parameter) - change[k]);
@@ -192,6 +206,29 @@ fn step<'a>(
         base.origin -= six.fixed_rows::<3>(0).into_owned();
     }
     Some(next)
+}
+
+/// What to take from the parameters so that none goes below its lowest value, `room` away: those
+/// that would do so stop there, and the others are where they fit best then.
+fn within_room(normal: &DMatrix<f64>, gradient: &DVector<f64>, room: &[f64]) -> Option<DVector<f64>> {
+    let (mut normal, mut gradient) = (normal.clone(), gradient.clone());
+    let mut is_stopped = vec![false; room.len()];
+    loop {
+        let change = normal.clone().cholesky()?.solve(&gradient);
+        let beyond: Vec<usize> = (0..room.len()).filter(|&k| !is_stopped[k] && change[k] > room[k]).collect();
+        if beyond.is_empty() {
+            return Some(change);
+        }
+        for k in beyond {
+            is_stopped[k] = true;
+            let column = normal.column(k).into_owned();
+            gradient.axpy(-room[k], &column, 1.0);
+            normal.column_mut(k).fill(0.0);
+            normal.row_mut(k).fill(0.0);
+            normal[(k, k)] = 1.0;
+            gradient[k] = room[k];
+        }
+    }
 }
 
 impl Fit {

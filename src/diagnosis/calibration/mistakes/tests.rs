@@ -4,6 +4,7 @@ mod held;
 mod moved_base;
 mod parts;
 mod rows;
+mod sagging;
 mod spots;
 
 use nalgebra::Vector3;

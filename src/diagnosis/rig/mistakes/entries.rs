@@ -179,8 +179,8 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
     if found.len() as f64 > (FEW * instants.len() as f64).max(1.0) { Vec::new() } else { found }
 }
 
-/// Lines whose readings scatter by rounding at least: a display that shows one number for most loads
-/// knows none of these.
+/// Lines whose readings scatter by rounding at least: a display that shows one number for most
+/// loads knows none of these.
 fn no_finer_than_the_display(data: &[Datum], lines: &[Line]) -> Vec<Line> {
     let rounded = |channel: Axis| {
         let step = resolution(data.iter().filter(|datum| datum.channel == channel));

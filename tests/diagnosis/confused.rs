@@ -107,9 +107,11 @@ fn a_rod_a_hundred_times_stiffer_is_no_slide_that_holds_every_load() {
         assert_ne!(softer, rod);
         Answer::of(Some(&softer), &readings)
     };
+    // no rod is so much stiffer: a number of its file, or a unit, is wrong
     let answer = with("2.0");
-    assert_eq!(answer.effects(), ["stiffness_scale", "friction"], "{}", answer.json["headline"]);
-    let [low, factor, high] = interval(answer.finding("stiffness_scale"), "factor");
+    assert_eq!(answer.effects(), ["unit_mistake", "friction"], "{}", answer.json["headline"]);
+    assert!(answer.class(0).contains(&"stiffness_scale"), "{:?}", answer.class(0));
+    let [low, factor, high] = interval(answer.finding("unit_mistake"), "factor");
     assert!(low < factor && factor < high && (90.0..100.0).contains(&factor), "{low} {factor} {high}");
     let [low, force, high] = interval(answer.finding("friction"), "force_n");
     assert!((0.6..1.2).contains(&force) && high - low < 0.5, "{low} {force} {high}");

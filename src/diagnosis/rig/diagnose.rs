@@ -237,10 +237,13 @@ fn add_stiffness(mistakes: &mut [Finding], recorded: &RigModel, evidence: &Evide
     let is_left = left.findings.iter().any(is_stiffness)
         || left.discrepancy.as_ref().is_some_and(|left| left.shown_by == ShownBy::Numbers)
         || left.nominal.iter().any(|number| number.moved().abs() > FAR);
-    if !is_left || !mistakes::is_one_factor(recorded, evidence) {
+    if !mistakes::is_one_factor(recorded, evidence) {
         return;
     }
-    for mistake in mistakes.iter_mut().filter(|mistake| *mistake.effect == UNIT_MISTAKE) {
+    // of a factor that is no unit's a number of the rod's file may be the cause as well
+    let may_be = |mistake: &Finding| is_left || mistakes::is_unknown_unit(mistake);
+    let units = mistakes.iter_mut().filter(|mistake| *mistake.effect == UNIT_MISTAKE);
+    for mistake in units.filter(|mistake| may_be(mistake)) {
         let rod = Location::Part(Part::Rod);
         mistake.rivals.push(Rival::without_term(&STIFFNESS_SCALE.effect, rod, 1.0));
     }

@@ -2,6 +2,7 @@
 
 use rodcal::diagnosis::rig::diagnose_among;
 use rodcal::inference::Diagnosis;
+use rodcal::report;
 use rodcal::rig::readings::Readings;
 use rodcal::rod::Rod;
 use rodcal::units::UM;
@@ -133,4 +134,31 @@ fn lengths_exchanged_are_no_axes_exchanged() {
     let answer = Answer::of(Some(&exchanged), &readings);
     assert_eq!(answer.effects(), ["swap_mistake", "stiffness_scale"], "{}", answer.json["headline"]);
     assert_eq!(answer.findings()[0]["location"], "l1_mm and l2_mm");
+}
+
+/// Two hundred grams that nobody counted in one trial: fitted with all else, so that the page does
+/// not say that it shows the recording without them. Kilograms are undone before.
+#[test]
+fn what_is_fitted_is_not_said_to_be_undone() {
+    let rod = std::fs::read_to_string("rods/5.toml").unwrap();
+    let readings = std::fs::read_to_string("stiffness_data/5.csv").unwrap();
+    let written = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        match cells.get(2) {
+            Some(&"2") => {
+                let kg: f64 = cells[1].parse().unwrap();
+                format!("{},{},{}", cells[0], kg - 0.2, cells[2..].join(","))
+            }
+            _ => line.to_owned(),
+        }
+    };
+    let lighter: String = readings.lines().map(|line| written(line) + "\n").collect();
+    let said = |readings: &str, effect: &str| {
+        let answer = Answer::of(Some(&rod), readings);
+        assert!(answer.effects().contains(&effect), "{}", answer.json["headline"]);
+        let report = report::diagnosis::rig::report(&answer.found, None);
+        report::text::text_within(&report, 300).contains("without the mistakes above")
+    };
+    assert!(!said(&lighter, "offset_mistake"));
+    assert!(said(&readings.replace("load_kg", "load_n"), "unit_mistake"));
 }

@@ -83,12 +83,18 @@ fn details(subject: &Subject, index: usize, finding: &Finding) -> String {
 
 fn location(subject: &mut Subject) -> Section {
     let findings = subject.diagnosis.findings.iter();
-    let mut mistakes = findings.filter(|finding| finding.kind() == Kind::Mistake).peekable();
-    let has_mistake = mistakes.peek().is_some();
-    let said = match mistakes.any(is_undone) {
-        true => "All that follows is of the recording without the mistakes above.",
-        false => "All that follows is of the recording as it is.",
+    let mistakes = findings.filter(|finding| finding.kind() == Kind::Mistake);
+    // some are corrected before there is a model, others are fitted with all else
+    let (fitted, beforehand): (Vec<&Finding>, Vec<&Finding>) =
+        mistakes.partition(|own| !own.parts.is_empty());
+    let said = match (beforehand.iter().any(|own| is_undone(own)), fitted.is_empty()) {
+        (true, true) => "All that follows is of the recording without the mistakes above.",
+        (true, false) => {
+            "All that follows is of the recording without those of the mistakes above that were corrected beforehand."
+        }
+        (false, _) => "All that follows is of the recording as it is.",
     };
+    let has_mistake = !(beforehand.is_empty() && fitted.is_empty());
     let mut blocks: Vec<Block> = has_mistake.then(|| Block::Paragraph(said.into())).into_iter().collect();
     blocks.push(locate(subject));
     blocks.append(&mut subject.places);

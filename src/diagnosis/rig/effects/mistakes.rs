@@ -4,7 +4,7 @@
 //! These are records only: a mistake is no term of a model but something that is undone before
 //! there is one. How they are found: `diagnosis/rig/mistakes`.
 
-use crate::inference::{Effect, WrittenTo, at};
+use crate::inference::{Effect, Location, WrittenTo, at};
 
 const NONE: Effect = Effect {
     prior: "one of some hundred, tried where nothing ordinary fits; odds of 1000 at least",
@@ -107,7 +107,10 @@ pub const OFFSET_MISTAKE: Effect = Effect {
     formula: "true = recorded − constant; of loads: true = recorded + constant",
     parameters: &[(&["um"], "the constant"), (&["n"], "what hung more than written")],
     cause: "a zero that was not taken",
-    cause_at: |location| at("a zero that was not taken", location),
+    cause_at: |location| match location {
+        Location::Key(key) if key.names.starts_with("load_") => at("a hanger that was not counted", location),
+        _ => at("a zero that was not taken", location),
+    },
     ..NONE
 };
 

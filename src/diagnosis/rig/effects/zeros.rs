@@ -33,9 +33,12 @@ pub static ZERO_NOT_TAKEN: RigEffect = RigEffect {
     observed: |finding, _| {
         if finding.quantity("n").is_some() {
             let (more, force) = (number(finding, "n").value > 0.0, size(finding, "n", "N"));
-            let [differ, cure] = if more { ["larger", "add"] } else { ["smaller", "subtract"] };
+            let [differ, as_with, cure] = match more {
+                true => ["larger", "a hanger that was not counted", "add"],
+                false => ["smaller", "zeros that were taken while a load hung", "subtract"],
+            };
             return format!(
-                "The loads are {force} {differ} than written ({}), as with a hanger that was not counted: {cure} that",
+                "The loads are {force} {differ} than written ({}), as with {as_with}: {cure} that",
                 finding.location
             );
         }

@@ -80,9 +80,9 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
         LoadColumn::Newtons => 1.0,
         LoadColumn::Kilograms => STANDARD_GRAVITY,
     };
-    let shown = |own: &'_ Vec<usize>| load_by_readings(data, lines, &line_of, own);
-    let shown: Vec<(&Vec<usize>, LoadByReadings)> =
-        instants.values().filter_map(|own| Some((own, shown(own)?))).collect();
+    let by_readings = |own: &[usize]| load_by_readings(data, lines, &line_of, own);
+    let shown: Vec<(&[usize], LoadByReadings)> =
+        instants.values().filter_map(|own| Some((&own[..], by_readings(own)?))).collect();
     // the weights of two rows of a run hung in the wrong order: each shows the other one's load
     let is_exchanged = |own: &[usize], load: f64| {
         let datum = &data[own[0]];
@@ -165,7 +165,7 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
             load: meant,
         });
     }
-    // what most rows of a load show is no slip of the pen
+    // what most rows of a load show was not typed wrongly
     let alike = |a: &Datum, b: &Datum| a.direction == b.direction && a.load == b.load;
     let first = |entry: &Entry| &data[entry.part.data[0]];
     let repeats = |entry: &Entry| {
@@ -173,10 +173,10 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
         let wrong = found.iter().filter(|other| alike(first(other), first(entry))).count();
         wrong > 1 && 2 * wrong > rows
     };
-    let repeated: Vec<bool> = found.iter().map(repeats).collect();
-    let mut repeated = repeated.into_iter();
-    found.retain(|_| !repeated.next().unwrap_or_default());
-    if found.len() as f64 > (FEW * instants.len() as f64).max(1.0) { Vec::new() } else { found }
+    let is_single: Vec<bool> = found.iter().map(|entry| !repeats(entry)).collect();
+    let single: Vec<Entry> =
+        found.into_iter().zip(is_single).filter_map(|(entry, is_its)| is_its.then_some(entry)).collect();
+    if single.len() as f64 > (FEW * instants.len() as f64).max(1.0) { Vec::new() } else { single }
 }
 
 /// Lines whose readings scatter by rounding at least: a display that shows one number for most

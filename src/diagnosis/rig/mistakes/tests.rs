@@ -1,5 +1,6 @@
 //! Every mistake on recordings as labs make them, and none on what only physics did.
 
+mod entries;
 mod labels;
 mod named;
 mod parts;

@@ -46,10 +46,7 @@ fn unknown_unit(labels: &Labels, channels: &[Axis], log_scale: f64) -> Option<Po
     // one channel's says nothing of the loads
     let and_loads = match is_one_of_several {
         true => String::new(),
-        false => format!(
-            " and of {}, and the moduli and diameters in the rod file",
-            load_column(labels.load_column)
-        ),
+        false => format!(" and of {}", load_column(labels.load_column)),
     };
     Some(PossibleMistake {
         effect: &UNIT_MISTAKE,

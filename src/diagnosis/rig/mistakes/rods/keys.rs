@@ -57,7 +57,7 @@ const RADIANS: OtherUnit = OtherUnit {
 };
 /// How usual it is that of the diameters in one file the outer ones alone, or the inner ones, are
 /// in another unit: ln.
-const EITHER_DIAMETER: f64 = -2.0;
+const EITHER_DIAMETER: f64 = -4.0;
 /// A key is right more often than a column: ln.
 pub(super) const KEY: f64 = -0.5;
 

@@ -8,9 +8,6 @@ use crate::diagnosis::rig::recording::datum;
 use crate::error::Result;
 use crate::inference::Location;
 
-/// So often loads are looked for that others of their lines have hidden.
-const ROUNDS: usize = 4;
-
 impl Mended {
     /// Trials that are copies.
     pub(super) fn copies(&mut self) {
@@ -38,23 +35,13 @@ impl Mended {
 
     /// Loads that were typed wrongly.
     pub(super) fn entries(&mut self) {
-        let mut corrected: Vec<usize> = Vec::new();
-        for _ in 0..ROUNDS {
-            let data = datum::all(&self.readings.rows);
-            let mut new = entries::found(&data, &lines(&data, |_| true), self.readings.load_column);
-            // one that was wrong hides another one of its line
-            new.retain(|entry| !entry.rows.iter().any(|row| corrected.contains(row)));
-            if new.is_empty() {
-                break;
+        let data = datum::all(&self.readings.rows);
+        for entry in entries::found(&data, &lines(&data, |_| true), self.readings.load_column) {
+            match entry.load {
+                Some(load) => entry.rows.iter().for_each(|&row| self.readings.rows[row].load = load),
+                None => self.leave_out(&data, &entry.part),
             }
-            for entry in new {
-                match entry.load {
-                    Some(load) => entry.rows.iter().for_each(|&row| self.readings.rows[row].load = load),
-                    None => self.leave_out(&data, &entry.part),
-                }
-                corrected.extend(&entry.rows);
-                self.add_part(entry.part);
-            }
+            self.add_part(entry.part);
         }
     }
 

@@ -36,6 +36,9 @@ const FAR: f64 = 0.1;
 /// a number that it may be, as a share.
 const AGREE: f64 = 4.0;
 const NEAR: f64 = 0.02;
+/// By how much a load that has only one of the two reasons, the digits and another row, is less
+/// likely than one of both (the logarithm of odds).
+const ONE_REASON: f64 = 3.0;
 /// A load so many times the others' largest would draw its line after it.
 const BEYOND: f64 = 1.3;
 /// Loads may be so many times a usual one.
@@ -102,7 +105,7 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
         let row = datum.row;
         let apart = (shown.load - datum.signed_load()).abs();
         let is_wrong = apart > FAR * usual && apart > SCATTERS * shown.error;
-        if !is_wrong || shown.off > AGREE || shown.against[0] < SCATTERS {
+        if !is_wrong || shown.off > AGREE {
             continue;
         }
         let along = f64::from(datum.direction.sign) * shown.load;
@@ -110,20 +113,20 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
         if along < 0.0 || along > MOST * usual {
             continue;
         }
-        let tolerance = (NEAR * along.abs()).max(2.0 * shown.error);
-        let meant = meant(datum.load / in_file, &levels, in_file);
-        let meant =
-            meant.into_iter().map(|load| load * in_file).filter(|load| (load - along).abs() < tolerance);
-        let meant = meant.min_by(|a, b| (a - along).abs().total_cmp(&(b - along).abs()));
         // one channel alone may be misread, but for a load that nobody else hung where it shows one
         // that was hung elsewhere, or for two rows that show each other's loads
         let is_elsewhere = |load: f64| {
             let is_same = |d: &&Datum| d.order != datum.order && (d.load - load).abs() < 1e-6 * usual;
             data.iter().any(|d| is_same(&d))
         };
+        let error = shown.error.max(NEAR * along.abs() / AGREE);
+        let meant = meant(datum.load, &levels, in_file, (along, error));
         let is_alone = shown.against[1] < AGREE;
         let is_known = !is_elsewhere(datum.load) && meant.is_some_and(is_elsewhere);
         if is_alone && !is_known && !is_exchanged(own, shown.load) {
+            continue;
+        }
+        if shown.against[0] < if is_known { AGREE } else { SCATTERS } {
             continue;
         }
         let name = load_column(unit);
@@ -199,9 +202,10 @@ fn number(value: f64) -> String {
     format!("{}", (value * 1e6).round() / 1e6)
 }
 
-/// A line that shows its loads.
-fn is_shown(line: &Line) -> bool {
-    line.fit.slope.abs() * line.largest_load > 2.0 * SCATTERS * line.fit.scatter
+/// A line that shows its loads and this one, N.
+fn shows(line: &Line, load: f64) -> bool {
+    line.fit.slope.abs() * line.largest_load.max(load.abs()) > 2.0 * SCATTERS * line.fit.scatter
+        && line.fit.slope.abs() > AGREE * line.fit.error
 }
 
 fn most_slope(lines: &[Line], line_of: &[Option<usize>], own: &[usize]) -> f64 {
@@ -234,7 +238,7 @@ fn load_by_readings(
         ((without_play(datum, line) - line.fit.slope * load) / sigma).abs()
     };
     let in_file = known.first().map(|(datum, _)| datum.signed_load())?;
-    let showing = known.iter().filter(|(_, line)| is_shown(line));
+    let showing = known.iter().filter(|(_, line)| shows(line, in_file));
     let mut against: Vec<f64> = showing.map(|one| off(in_file, one)).chain([0.0; 2]).collect();
     against.sort_by(|a, b| b.total_cmp(a));
     load.is_finite().then(|| LoadByReadings {
@@ -263,19 +267,36 @@ fn without<'a>(data: &[Datum], line: &'a Line, own: usize) -> Cow<'a, Line> {
     Cow::Owned(Line { fit: fit(&points), largest_load: largest, has_slope, data: others, ..line.clone() })
 }
 
-/// Numbers that may have been meant, in the unit of the file: other loads of the recording, the
-/// decimal point elsewhere, two digits exchanged.
-fn meant(written: f64, levels: &[f64], in_file: f64) -> Vec<f64> {
-    let mut meant: Vec<f64> = [0.01, 0.1, 10.0, 100.0].map(|factor| factor * written).to_vec();
+/// The load that was meant, N: one that another row has, or the written one with its decimal point
+/// elsewhere or two digits exchanged; the likeliest of those that the readings, `shown` N with
+/// their standard error, do not contradict.
+///
+/// ```text
+/// z²/2 + what is unlikely about it
+/// ```
+fn meant(written: f64, levels: &[f64], in_file: f64, (shown, error): (f64, f64)) -> Option<f64> {
+    let is_same = |a: f64, b: f64| (a - b).abs() < 1e-6 * b.abs();
+    let is_level = |load: f64| levels.iter().any(|&level| is_same(load, level));
+    let its_digits = of_its_digits(written / in_file).into_iter().map(|load| (load * in_file, true));
+    let others = levels.iter().map(|&level| (level, false));
+    let possible = its_digits.chain(others).filter(|(load, _)| load.is_finite() && !is_same(*load, written));
+    let cost = |&(load, is_by_digits): &(f64, bool)| {
+        let z = (load - shown) / error;
+        let is_both = is_by_digits && is_level(load);
+        let (away, unlikely) = if is_both { (AGREE, 0.0) } else { (AGREE / 2.0, ONE_REASON) };
+        (z.abs() < away).then_some((load, 0.5 * z * z + unlikely))
+    };
+    possible.filter_map(|one| cost(&one)).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(load, _)| load)
+}
+
+/// A number with its decimal point elsewhere, or two neighbouring digits exchanged.
+fn of_its_digits(written: f64) -> Vec<f64> {
+    let mut found: Vec<f64> = [0.01, 0.1, 10.0, 100.0].map(|factor| factor * written).to_vec();
     let digits: Vec<char> = number(written).chars().collect();
-    for i in 0..digits.len() {
-        for j in i + 1..digits.len() {
-            let mut other = digits.clone();
-            other.swap(i, j);
-            meant.extend(other.iter().collect::<String>().parse::<f64>());
-        }
+    for i in 1..digits.len() {
+        let mut other = digits.clone();
+        other.swap(i - 1, i);
+        found.extend(other.iter().collect::<String>().parse::<f64>());
     }
-    meant.extend(levels.iter().map(|level| level / in_file));
-    meant.retain(|value| value.is_finite() && (value - written).abs() > 1e-9 * written.abs());
-    meant
+    found
 }

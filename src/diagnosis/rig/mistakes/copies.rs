@@ -1,10 +1,11 @@
 //! Trials that are a copy of another one.
 //!
 //! Readings of the same loads in two trials are the same to the last digit now and then: with a
-//! scatter of s and a display of step q in a share of p = q/(2·√π·s) of them. All n of a trial are
-//! by a chance of pⁿ. A recording without noise repeats itself in every trial; only where others
-//! scatter, beside zeros and slopes of their own, or, where they went through other loads or
-//! stations, its own readings scatter about each other, is one a copy.
+//! scatter of s and a display of step q in a share of p = q/(2·√π·s) of them; where the step hides
+//! the scatter, in as many as other trials share. All n of a trial are by a chance of pⁿ. A
+//! recording without noise repeats itself in every trial; only where others scatter, beside zeros
+//! and slopes of their own, or, where none went through the same loads and stations as another, its
+//! own readings scatter about each other, is one a copy.
 
 use std::collections::BTreeMap;
 
@@ -49,20 +50,31 @@ pub(super) fn found(data: &[Datum]) -> Vec<Part> {
     let mut found = Vec::new();
     for (t, own) in trials.iter().enumerate() {
         let Some(first) = (0..t).find(|&other| same[other] == same[t]) else { continue };
-        let others =
-            (0..trials.len()).filter(|&o| protocols[o] == protocols[t] && same[o] != same[t]).take(COMPARED);
-        let mut scatters: Vec<f64> = others.flat_map(|other| scatters(data, own, trials[other])).collect();
+        let differs = |a: usize, b: usize| protocols[a] == protocols[b] && same[a] != same[b];
+        let mut compared: Vec<(usize, usize)> =
+            (0..trials.len()).filter(|&o| differs(t, o)).map(|o| (t, o)).take(COMPARED).collect();
+        if compared.is_empty() {
+            // other trials went through loads or stations of their own
+            let pairs = (0..trials.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+            compared = pairs.filter(|&(a, b)| differs(a, b)).take(COMPARED).collect();
+        }
+        let mut scatters: Vec<f64> =
+            compared.iter().flat_map(|&(a, b)| scatters(data, trials[a], trials[b])).collect();
         if scatters.is_empty() && same.iter().any(|other| *other != same[t]) {
             scatters = own_scatters(data, own);
         }
         let scatter = median(&scatters).unwrap_or(0.0);
         let step = resolution(own.iter().map(|&i| &data[i]));
-        let moving = own.iter().filter(|&&i| data[i].measured != 0.0).count();
-        if scatter <= STEPS * step {
-            continue;
-        }
-        let chance = step.max(1e-3 * scatter) / (2.0 * std::f64::consts::PI.sqrt() * scatter);
-        if moving as f64 * -chance.min(1.0).ln() < ODDS + (trials.len() as f64).ln() {
+        let odds = if scatter > STEPS * step {
+            let chance = step.max(1e-3 * scatter) / (2.0 * std::f64::consts::PI.sqrt() * scatter);
+            let moving = own.iter().filter(|&&i| data[i].measured != 0.0).count();
+            moving as f64 * -chance.min(1.0).ln()
+        } else if compared.is_empty() {
+            0.0
+        } else {
+            of_shares(data, compared.iter().map(|&(a, b)| (&trials[a][..], &trials[b][..])))
+        };
+        if odds < ODDS + (trials.len() as f64).ln() {
             continue;
         }
         let (name, original) = (name(data, own), name(data, trials[first]));
@@ -92,6 +104,30 @@ fn scatters(data: &[Datum], first: &[usize], second: &[usize]) -> Vec<f64> {
         points[line].push((data[a].signed_load(), data[a].measured - data[b].measured));
     }
     points.iter().filter(|points| points.len() > 2).map(|points| fit(points).scatter / 2f64.sqrt()).collect()
+}
+
+/// Odds against as many readings being the same to the last digit as a trial has, by the most that
+/// two trials of `pairs` share in each line: −Σ n·ln((most + ½)/(n + 1)), R. E. Krichevsky and V. K.
+/// Trofimov, *IEEE Trans. Inf. Theory* 27 (1981) 199–207.
+fn of_shares<'a>(data: &[Datum], pairs: impl Iterator<Item = (&'a [usize], &'a [usize])>) -> f64 {
+    let mut most: BTreeMap<_, [usize; 2]> = BTreeMap::new();
+    for (first, second) in pairs {
+        let mut shared: BTreeMap<_, [usize; 2]> = BTreeMap::new();
+        for (&a, &b) in first.iter().zip(second) {
+            let [same, all] = shared.entry(data[a].line_key()).or_default();
+            *same += usize::from(data[a].measured == data[b].measured);
+            *all += 1;
+        }
+        for (line, own) in shared {
+            let most = most.entry(line).or_insert(own);
+            *most = (*most).max(own);
+        }
+    }
+    let odds = |&[same, all]: &[usize; 2]| {
+        let [same, all] = [same as f64, all as f64];
+        -all * ((same + 0.5) / (all + 1.0)).ln()
+    };
+    most.values().map(odds).sum()
 }
 
 /// Scatter of the readings of each sensor of a trial about each other, m.

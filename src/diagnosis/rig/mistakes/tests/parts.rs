@@ -276,25 +276,48 @@ fn a_trial_that_repeats_another_one_is_a_copy() {
     cases.check();
 }
 
-/// The only other trial was read elsewhere: the readings themselves show that they scatter.
+/// A display that hides what single readings scatter by: others share a half of them, not all.
+#[test]
+fn a_copy_under_a_coarse_display_is_a_copy() {
+    let mut cases = Cases::default();
+    let file = rod(ROD_5);
+    for (seed, step) in [(0, 5.0 * UM), (1, 10.0 * UM), (2, 5.0 * UM), (3, 10.0 * UM)] {
+        let mut clean = recorded(&file, Bench::Full, seed);
+        for y in clean.rows.iter_mut().flat_map(|row| row.offset.iter_mut().flatten()) {
+            *y = (*y / step).round() * step;
+        }
+        let first: Vec<Reading> =
+            clean.rows.iter().filter(|row| row.trial.as_deref() == Some("1")).cloned().collect();
+        let mut copied = clean.clone();
+        for (row, original) in of_trial(&mut copied, "3").zip(&first) {
+            row.offset = original.offset;
+        }
+        cases.expect(&format!("{seed}"), &clean, &file, &[]);
+        cases.expect(&format!("{seed} copied"), &copied, &file, &["copy_mistake trial 3"]);
+    }
+    cases.check();
+}
+
+/// The other trials were read elsewhere: the readings themselves show that they scatter, or the
+/// others do.
 #[test]
 fn a_copy_beside_a_trial_at_another_station_is_a_copy() {
     let mut cases = Cases::default();
     let file = rod(ROD_5);
-    for (seed, loads) in [(0, 15), (1, 15), (2, 8), (3, 8)] {
+    for (seed, loads, trials) in [(0, 15, 3), (1, 15, 3), (2, 8, 3), (3, 8, 3), (4, 4, 4), (5, 4, 4)] {
         let mut rows = Vec::new();
-        for (trial, axis) in (1..=3).flat_map(|trial| [Axis::Y, Axis::Z].map(|axis| (trial, axis))) {
+        for (trial, axis) in (1..=trials).flat_map(|trial| [Axis::Y, Axis::Z].map(|axis| (trial, axis))) {
             for k in 1..=loads {
                 let mut row = Reading::new(Direction::along(axis), f64::from(k));
                 row.trial = Some(trial.to_string());
-                row.read_station = (trial == 2).then(|| 0.6 * file.length());
+                row.read_station = (trial % 2 == 0).then(|| 0.6 * file.length());
                 row.offset = [Some(0.0); 3];
                 rows.push(row);
             }
         }
         let clean = read(&file, rows, seed);
         let mut copied = clean.clone();
-        let count = clean.rows.len() / 3;
+        let count = clean.rows.len() / trials;
         (0..count).for_each(|k| copied.rows[2 * count + k].offset = clean.rows[k].offset);
         cases.expect(&format!("{seed}"), &clean, &file, &[]);
         cases.expect(&format!("{seed} copied"), &copied, &file, &["copy_mistake trial 3"]);

@@ -79,11 +79,14 @@ impl Chronicle {
         let count = named.iter().max().map_or(0, |last| last + 1);
         let (mut named, mut open) = (named.into_iter(), HashMap::<(usize, usize), OpenRun>::new());
         let mut trial = vec![0; rows.len()];
+        let mut before = None;
         for &i in &walk {
+            let own = (session[i], axis(i));
+            let goes_on = before.replace(own) == Some(own);
             trial[i] = match rows[i].trial {
                 Some(_) => named.next().unwrap_or_default(),
                 None if is_one_run => count + session[i],
-                None => open.entry((session[i], axis(i))).or_default().trial(&rows[i], driven),
+                None => open.entry(own).or_default().trial(&rows[i], driven, goes_on),
             };
         }
         if !is_one_run {
@@ -332,14 +335,14 @@ struct OpenRun {
 impl OpenRun {
     /// Number of the run that a row without a trial continues or begins: a run along an axis goes
     /// on until something is read again that it has read before; reading the display once more at
-    /// the same load is no new run.
-    fn trial(&mut self, row: &Reading, driven: Driven) -> usize {
+    /// the same load is no new run where the row before it `goes_on`: was of the same axis.
+    fn trial(&mut self, row: &Reading, driven: Driven, goes_on: bool) -> usize {
         let stations = [row.load_station, row.read_station].map(|s| s.map(f64::to_bits));
         let set = drive(row, driven).unwrap_or(row.load).abs();
         let condition = (row.direction.sign, set.to_bits(), row.phase, stations);
         let channels = row.offset.map(|offset| offset.is_some());
         let overlaps = |other: &[bool; 3]| channels.iter().zip(other).any(|(a, b)| *a && *b);
-        let is_same_load = self.last == Some(condition);
+        let is_same_load = goes_on && self.last == Some(condition);
         if self.seen.get(&condition).is_some_and(overlaps) && !is_same_load {
             *self = OpenRun { ordinal: self.ordinal + 1, ..OpenRun::default() };
         }

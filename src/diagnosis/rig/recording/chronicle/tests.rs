@@ -57,6 +57,20 @@ fn loads_that_jump_back_begin_anew() {
     assert!(chronicle(&format!("axis,load_n,dy_um\n{rows}")).iter().all(|entry| entry.motion.is_none()));
 }
 
+/// Loads in any order: the one that a run ends with may be the first of the next.
+#[test]
+fn a_load_that_another_axis_comes_before_is_not_read_once_more() {
+    let run = |axis: char, loads: [u32; 4]| loads.map(|load| format!("{axis},{load},0\n")).concat();
+    let own = [7, 3, 9, 5];
+    let rows = run('z', own) + &run('y', own) + &run('z', [5, 9, 3, 7]) + &run('y', own);
+    let runs = column(&format!("axis,load_n,dy_um\n{rows}"), |entry| entry.run);
+    assert_eq!(runs, [0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3]);
+    // the display once more
+    let rows = run('z', [7, 3, 3, 5]) + &run('z', [7, 3, 3, 5]);
+    let runs = column(&format!("axis,load_n,dy_um\n{rows}"), |entry| entry.run);
+    assert_eq!(runs, [0, 0, 0, 0, 1, 1, 1, 1]);
+}
+
 #[test]
 fn a_trial_of_another_session_is_another_trial() {
     let text = "session,trial,axis,load_n,dy_um\na,1,y,5,0\na,1,y,6,0\nb,1,y,5,0\nb,1,y,6,0\na,2,y,5,0\n";

@@ -29,16 +29,25 @@ const FEWEST: usize = 20;
 /// a datum: r repeats leave (r − 1)/r of it. Nothing for what was not repeated, or hardly counts:
 /// what is far off says nothing of the others.
 pub fn deviations(evidence: &Evidence, left: &DVector<f64>) -> Vec<Option<f64>> {
+    deviations_among(evidence, left, |_| true)
+}
+
+/// The same among the rows that are `wanted`.
+pub fn deviations_among(
+    evidence: &Evidence,
+    left: &DVector<f64>,
+    is_wanted: impl Fn(usize) -> bool,
+) -> Vec<Option<f64>> {
+    let counts = |row: usize| evidence.counts(row) && is_wanted(row);
     let mut replicates: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
-    for (row, &group) in evidence.replicate_group.iter().enumerate().filter(|(row, _)| evidence.counts(*row))
-    {
+    for (row, &group) in evidence.replicate_group.iter().enumerate().filter(|(row, _)| counts(*row)) {
         let (sum, count) = replicates.entry(group).or_default();
         (*sum, *count) = (*sum + left[row], *count + 1.0);
     }
     let off = |(row, group): (usize, &usize)| {
         let (sum, repeats) = *replicates.get(group)?;
         let scale = (evidence.weight[row] * repeats / (repeats - 1.0)).sqrt();
-        (evidence.counts(row) && repeats > 1.0).then(|| (left[row] - sum / repeats) * scale)
+        (counts(row) && repeats > 1.0).then(|| (left[row] - sum / repeats) * scale)
     };
     evidence.replicate_group.iter().enumerate().map(off).collect()
 }

@@ -5,16 +5,18 @@ use std::collections::BTreeMap;
 use nalgebra::DVector;
 
 use crate::inference::Evidence;
-use crate::inference::noise::correlation::{by_group, deviations, likeliest};
+use crate::inference::noise::correlation::{by_group, deviations_among, likeliest};
+use crate::statistics::median;
 
 /// ρ that is believed before the data: a zero that was read once is as good as any other reading.
 const RATIO_BEFORE: f64 = 1.0;
 /// What that belief counts, in degrees of freedom.
 const BELIEF: f64 = 10.0;
 /// Of fewer groups nobody knows which mean is far out; and how far that is, in robust standard
-/// deviations.
+/// deviations; and of how many at most, one in so many.
 const FEWEST_GROUPS: usize = 6;
 const FAR: f64 = 3.0;
+const ONE_IN: usize = 3;
 
 /// Where so large a share of the mean square is shared, zeros scatter three times as far as
 /// readings: with so many degrees of freedom within the groups nothing needs to be believed of
@@ -29,8 +31,10 @@ const ENOUGH: f64 = 20.0;
 ///
 /// Beside a correlation the likeliest, drawn towards the same belief.
 pub fn shared_ratio(evidence: &Evidence, left: &DVector<f64>, correlation: f64) -> f64 {
-    let deviations = deviations(evidence, left);
-    let squares = Squares::of(evidence, &deviations);
+    let far_out = FarOut::of(evidence, left);
+    let deviations =
+        deviations_among(evidence, left, |row| !far_out.groups.contains_key(&evidence.shared[row]));
+    let squares = Squares::of(evidence, &deviations, &far_out);
     let clear = || squares.clear().filter(|_| squares.is_clear_without_farthest(evidence, left));
     if correlation > 0.0 {
         let (ratio, _) = likeliest(&by_group(evidence, &deviations), correlation);
@@ -64,43 +68,39 @@ struct Squares {
 }
 
 impl Squares {
-    fn of(evidence: &Evidence, deviations: &[Option<f64>]) -> Squares {
+    fn of(evidence: &Evidence, deviations: &[Option<f64>], far_out: &FarOut) -> Squares {
         let mut all = Squares::default();
         let mut groups: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
         for (row, deviation) in deviations.iter().enumerate() {
             let Some(deviation) = deviation else { continue };
-            all.square += deviation * deviation;
-            all.count += 1.0;
             let (total, squares, members) = groups.entry(evidence.shared[row]).or_default();
             *total += deviation;
             *squares += deviation * deviation;
             *members += 1.0;
         }
-        // a step between two runs is no scatter of their zeros: a mean far out counts as far as
-        // usual
-        let limit = match groups.len() >= FEWEST_GROUPS {
-            true => {
-                let mut means: Vec<f64> =
-                    groups.values().map(|(total, _, members)| (total / members).abs()).collect();
-                means.sort_by(f64::total_cmp);
-                FAR * 1.4826 * means[means.len() / 2]
-            }
-            false => f64::INFINITY,
-        };
         let mut far = 0.0;
         for (group, (total, squares, members)) in groups {
             let mean = total / members;
-            all.within += squares - members * mean * mean;
-            all.groups += 1.0;
+            all.add(mean, squares - members * mean * mean, members);
             if mean.abs() > far {
                 (far, all.farthest) = (mean.abs(), Some(group));
             }
-            let clipped = mean.clamp(-limit, limit);
-            let squares = squares - members * (mean * mean - clipped * clipped);
-            all.product += (clipped * members).powi(2) - squares;
-            all.pairs += members * (members - 1.0);
         }
+        // a step between two runs is no scatter of their zeros: a mean far out counts as far as
+        // usual
+        far_out.groups.values().for_each(|&(within, members)| all.add(far_out.limit, within, members));
         all
+    }
+
+    /// A group of so many members with its mean and its squares about it.
+    fn add(&mut self, mean: f64, within: f64, members: f64) {
+        let squares = within + members * mean * mean;
+        self.count += members;
+        self.square += squares;
+        self.within += within;
+        self.groups += 1.0;
+        self.product += (mean * members).powi(2) - squares;
+        self.pairs += members * (members - 1.0);
     }
 
     fn mean(&self) -> f64 {
@@ -127,7 +127,51 @@ impl Squares {
         let rows: Vec<usize> =
             (0..left.len()).filter(|&row| Some(evidence.shared[row]) != self.farthest).collect();
         let rest = evidence.part(&rows);
-        Squares::of(&rest, &deviations(&rest, &left.select_rows(&rows))).clear().is_some()
+        let left = left.select_rows(&rows);
+        Squares::of(&rest, &deviations_among(&rest, &left, |_| true), &FarOut::default()).clear().is_some()
+    }
+}
+
+/// Groups that are far out: not by the mean of their repeats, of which one of three moves the other
+/// two as well, but by the median.
+#[derive(Default)]
+struct FarOut {
+    /// How far a mean may be off.
+    limit: f64,
+    /// Squares of each about its mean, and its members.
+    groups: BTreeMap<usize, (f64, f64)>,
+}
+
+impl FarOut {
+    fn of(evidence: &Evidence, left: &DVector<f64>) -> FarOut {
+        let mut repeats: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        let counting = evidence.replicate_group.iter().enumerate().filter(|(row, _)| evidence.counts(*row));
+        counting.for_each(|(row, &group)| repeats.entry(group).or_default().push(row));
+        let mut groups: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        for rows in repeats.values().filter(|rows| rows.len() > 1) {
+            let centre = median(&rows.iter().map(|&row| left[row]).collect::<Vec<_>>()).unwrap_or_default();
+            for &row in rows {
+                let off = (left[row] - centre) * evidence.weight[row].sqrt();
+                groups.entry(evidence.shared[row]).or_default().push(off);
+            }
+        }
+        if groups.len() < FEWEST_GROUPS {
+            return FarOut::default();
+        }
+        let mean = |own: &[f64]| own.iter().sum::<f64>() / own.len() as f64;
+        let means: Vec<f64> = groups.values().map(|own| mean(own).abs()).collect();
+        let limit = FAR * 1.4826 * median(&means).unwrap_or_default();
+        let all = groups.len();
+        let far = groups.into_iter().filter(|(_, own)| mean(own).abs() > limit);
+        let with_squares = far.map(|(group, own)| {
+            let within = own.iter().map(|off| (off - mean(&own)).powi(2)).sum();
+            (group, (within, own.len() as f64))
+        });
+        let far: BTreeMap<usize, (f64, f64)> = with_squares.collect();
+        match far.len() * ONE_IN > all {
+            true => FarOut::default(),
+            false => FarOut { limit, groups: far },
+        }
     }
 }
 

@@ -25,12 +25,17 @@ use crate::statistics::median;
 /// Scatter that hardly any display rounds away, in steps.
 const STEPS: f64 = 0.5;
 
+/// No display shows less than this share of its largest reading.
+const EXACT: f64 = 1e-7;
+
 /// So many other trials show how far readings scatter.
 const COMPARED: usize = 20;
 
 /// What a trial shows: direction, stations, load, phase and channel of each reading, in turn, with
 /// the reading, m.
 type Shown = (i8, usize, [u64; 2], u64, bool, usize);
+/// Axis of the load, channel and stations.
+type LineKey = (Axis, Axis, [u64; 2]);
 
 /// Trials whose readings are those of an earlier one; `data` of the copies.
 pub(super) fn found(data: &[Datum]) -> Vec<Part> {
@@ -58,13 +63,22 @@ pub(super) fn found(data: &[Datum]) -> Vec<Part> {
             let pairs = (0..trials.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
             compared = pairs.filter(|&(a, b)| differs(a, b)).take(COMPARED).collect();
         }
-        let mut scatters: Vec<f64> =
-            compared.iter().flat_map(|&(a, b)| scatters(data, trials[a], trials[b])).collect();
+        let (mut scatters, mut freedom) = (Vec::new(), 0.0);
+        for &(a, b) in &compared {
+            for points in differences(data, trials[a], trials[b]).values().filter(|points| points.len() > 2) {
+                // what two trials differ by beside a zero and a slope, which need no noise
+                scatters.push(fit(points).scatter / 2f64.sqrt());
+                freedom += (points.len() - 2) as f64;
+            }
+        }
         if scatters.is_empty() && same.iter().any(|other| *other != same[t]) {
             scatters = own_scatters(data, own);
+            freedom = own.len() as f64;
         }
-        let scatter = median(&scatters).unwrap_or(0.0);
-        let step = resolution(own.iter().map(|&i| &data[i]));
+        // what few readings show may be less: √(ν/χ²) at two standard deviations of χ²
+        let surely = (freedom / (freedom + 2.0 * (2.0 * freedom).sqrt())).sqrt();
+        let scatter = surely * median(&scatters).unwrap_or(0.0);
+        let step = display(data, own.iter().copied());
         let odds = if scatter > STEPS * step {
             let chance = step.max(1e-3 * scatter) / (2.0 * std::f64::consts::PI.sqrt() * scatter);
             let moving = own.iter().filter(|&&i| data[i].measured != 0.0).count();
@@ -95,30 +109,27 @@ pub(super) fn found(data: &[Datum]) -> Vec<Part> {
     found
 }
 
-/// Scatter of the readings of each line of two trials through the same loads, m: of what they
-/// differ by beside a zero and a slope, which need no noise.
-fn scatters(data: &[Datum], first: &[usize], second: &[usize]) -> Vec<f64> {
-    let line = numbered(first.iter().map(|&i| data[i].line_key()));
-    let mut points: Vec<Vec<(f64, f64)>> = vec![Vec::new(); line.iter().max().map_or(0, |last| last + 1)];
-    for ((&a, &b), line) in first.iter().zip(second).zip(line) {
-        points[line].push((data[a].signed_load(), data[a].measured - data[b].measured));
+/// Load, N, and difference, m, of the readings of two trials through the same loads, by their lines.
+fn differences(data: &[Datum], first: &[usize], second: &[usize]) -> BTreeMap<LineKey, Vec<(f64, f64)>> {
+    let mut of_line: BTreeMap<LineKey, Vec<(f64, f64)>> = BTreeMap::new();
+    for (&a, &b) in first.iter().zip(second) {
+        let point = (data[a].signed_load(), data[a].measured - data[b].measured);
+        of_line.entry(data[a].line_key()).or_default().push(point);
     }
-    points.iter().filter(|points| points.len() > 2).map(|points| fit(points).scatter / 2f64.sqrt()).collect()
+    of_line
 }
 
 /// Odds against as many readings being the same to the last digit as a trial has, by the most that
-/// two trials of `pairs` share in each line: −Σ n·ln((most + ½)/(n + 1)), R. E. Krichevsky and V. K.
-/// Trofimov, *IEEE Trans. Inf. Theory* 27 (1981) 199–207.
+/// two trials of `pairs` share in each line, beside a zero and a slope: −Σ n·ln((most + ½)/(n + 1)),
+/// R. E. Krichevsky and V. K. Trofimov, *IEEE Trans. Inf. Theory* 27 (1981) 199–207.
 fn of_shares<'a>(data: &[Datum], pairs: impl Iterator<Item = (&'a [usize], &'a [usize])>) -> f64 {
     let mut most: BTreeMap<_, [usize; 2]> = BTreeMap::new();
     for (first, second) in pairs {
-        let mut shared: BTreeMap<_, [usize; 2]> = BTreeMap::new();
-        for (&a, &b) in first.iter().zip(second) {
-            let [same, all] = shared.entry(data[a].line_key()).or_default();
-            *same += usize::from(data[a].measured == data[b].measured);
-            *all += 1;
-        }
-        for (line, own) in shared {
+        for (line, points) in differences(data, first, second) {
+            let step = display(data, first.iter().copied().filter(|&i| data[i].line_key() == line));
+            let usual = fit(&points);
+            let is_alike = |(load, off): &&(f64, f64)| (off - usual.at(*load)).abs() < 0.5 * step;
+            let own = [points.iter().filter(is_alike).count(), points.len()];
             let most = most.entry(line).or_insert(own);
             *most = (*most).max(own);
         }
@@ -128,6 +139,12 @@ fn of_shares<'a>(data: &[Datum], pairs: impl Iterator<Item = (&'a [usize], &'a [
         -all * ((same + 0.5) / (all + 1.0)).ln()
     };
     most.values().map(odds).sum()
+}
+
+/// The step of the display of some readings, m.
+fn display(data: &[Datum], own: impl Iterator<Item = usize> + Clone) -> f64 {
+    let largest = own.clone().fold(0.0, |most: f64, i| most.max(data[i].measured.abs()));
+    resolution(own.map(|i| &data[i])).max(EXACT * largest)
 }
 
 /// Scatter of the readings of each sensor of a trial about each other, m.

@@ -45,8 +45,9 @@ const BEYOND: f64 = 1.3;
 const MOST: f64 = 150.0;
 /// Lines of fewer readings say nothing of one of them.
 const LEAST: usize = 6;
-/// At most this share of the rows.
+/// At most this share of the rows, and one in so many of a run.
 const FEW: f64 = 0.1;
+const FEW_OF_A_RUN: usize = 3;
 
 /// A load that was typed wrongly.
 pub(super) struct Entry {
@@ -70,11 +71,11 @@ struct LoadByReadings {
 
 /// Loads of single rows that all their readings contradict.
 pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Entry> {
-    let lines = &no_finer_than_the_display(data, lines);
     let mut line_of: Vec<Option<usize>> = vec![None; data.len()];
     for (k, line) in lines.iter().enumerate().filter(|(_, line)| line.data.len() >= LEAST) {
         line.data.iter().for_each(|&i| line_of[i] = Some(k));
     }
+    let lines = &fit_to_show_loads(data, lines);
     let mut instants: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     data.iter().enumerate().for_each(|(i, datum)| instants.entry(datum.order).or_default().push(i));
     let levels: Vec<f64> = data.iter().map(|datum| datum.load).collect();
@@ -179,22 +180,30 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
     let is_single: Vec<bool> = found.iter().map(|entry| !repeats(entry)).collect();
     let single: Vec<Entry> =
         found.into_iter().zip(is_single).filter_map(|(entry, is_its)| is_its.then_some(entry)).collect();
-    if single.len() as f64 > (FEW * instants.len() as f64).max(1.0) { Vec::new() } else { single }
+    // nor what most rows of a run do
+    let run = |entry: &Entry| first(entry).run;
+    let of_its_run = |entry: &Entry| single.iter().filter(|other| run(other) == run(entry)).count();
+    let rows_of = |entry: &Entry| instants.values().filter(|own| data[own[0]].run == run(entry)).count();
+    let is_few = |entry: &Entry| of_its_run(entry) < 2 || of_its_run(entry) * FEW_OF_A_RUN <= rows_of(entry);
+    let are_few = single.len() as f64 <= (FEW * instants.len() as f64).max(1.0) && single.iter().all(is_few);
+    if are_few { single } else { Vec::new() }
 }
 
-/// Lines whose readings scatter by rounding at least: a display that shows one number for most
-/// loads knows none of these.
-fn no_finer_than_the_display(data: &[Datum], lines: &[Line]) -> Vec<Line> {
+/// Lines without loads far beyond all others, whose readings scatter by rounding at least: a
+/// display that shows one number for most loads knows none of these.
+fn fit_to_show_loads(data: &[Datum], lines: &[Line]) -> Vec<Line> {
     let rounded = |channel: Axis| {
         let step = resolution(data.iter().filter(|datum| datum.channel == channel));
         step / 12f64.sqrt()
     };
     let rounded = Axis::ALL.map(rounded);
-    let mut lines = lines.to_vec();
-    for line in &mut lines {
+    let own = |line: &Line| {
+        let farthest = line.data.iter().copied().max_by(|&a, &b| data[a].load.total_cmp(&data[b].load));
+        let mut line = farthest.map_or(Cow::Borrowed(line), |own| without(data, line, own)).into_owned();
         line.fit.scatter = line.fit.scatter.max(rounded[line.channel.index()]);
-    }
-    lines
+        line
+    };
+    lines.iter().map(own).collect()
 }
 
 /// As it stands in a file: without what conversions leave in the last digits.
@@ -218,8 +227,8 @@ fn load_by_readings(
     line_of: &[Option<usize>],
     own: &[usize],
 ) -> Option<LoadByReadings> {
-    let line = |&i: &usize| Some((&data[i], without(data, &lines[line_of[i]?], i)));
-    let known: Vec<(&Datum, Cow<'_, Line>)> =
+    let line = |&i: &usize| Some((&data[i], &lines[line_of[i]?]));
+    let known: Vec<(&Datum, &Line)> =
         own.iter().filter_map(line).filter(|(_, line)| line.has_slope).collect();
     let scatter = |line: &Line| line.fit.scatter.max(1e-4 * line.fit.slope.abs() * line.largest_load);
     let without_play = |datum: &Datum, line: &Line| {
@@ -232,7 +241,7 @@ fn load_by_readings(
         bottom += weight * line.fit.slope.powi(2);
     }
     let load = top / bottom;
-    let off = |load: f64, (datum, line): &(&Datum, Cow<'_, Line>)| {
+    let off = |load: f64, (datum, line): &(&Datum, &Line)| {
         // the slope is known to its error only
         let sigma = scatter(line).hypot(line.fit.error * load);
         ((without_play(datum, line) - line.fit.slope * load) / sigma).abs()

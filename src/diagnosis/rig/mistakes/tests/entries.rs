@@ -102,3 +102,33 @@ fn one_channel_alone_corrects_a_load_that_nobody_hung() {
         assert_eq!(named, expected, "{typed}");
     }
 }
+
+/// In readings that scatter the nearest load of all is not the likeliest: one that another row has
+/// and whose digits were written is, a few scatters away as well.
+#[test]
+fn what_was_meant_has_the_digits_that_were_written() {
+    let levels = [0.1, 0.21, 0.34, 0.41, 0.52, 1.6, 2.49];
+    let with = |row: usize, written: f64, off: f64| {
+        let mut random = Random::seeded(5, 0);
+        let mut text = "axis,load_kg,trial,dz_um\n".to_owned();
+        for (k, load) in (0..4).flat_map(|_| levels).enumerate() {
+            let noise = 2.0 * if k + 1 == row { off } else { random.normal() };
+            let load_kg = if k + 1 == row { written } else { load };
+            text += &format!("z,{load_kg},{},{:.1}\n", k / levels.len() + 1, 80.0 * load + noise);
+        }
+        let mended = mended(&Readings::from_text("f", &text).unwrap(), None, &[]).unwrap();
+        let load = (mended.readings.rows[row - 1].load / G * 1e4).round() / 1e4;
+        (names(&mended), load)
+    };
+    for (row, written, off, meant) in [
+        (14, 24.9, 3.0, 2.49),
+        (10, 0.034, 2.0, 0.34),
+        (10, 0.034, -2.5, 0.34),
+        (11, 0.14, 1.5, 0.41),
+        (20, 0.16, 3.5, 1.6),
+    ] {
+        let (names, load) = with(row, written, off);
+        assert_eq!(names, [format!("typing_mistake load_kg, row {row}")], "{written}");
+        assert_eq!(load, meant, "{written}, {off} scatters off");
+    }
+}

@@ -109,6 +109,9 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
         if !is_wrong || shown.off > AGREE {
             continue;
         }
+        if is_as_others(data, lines, &line_of, own, apart) {
+            continue;
+        }
         let along = f64::from(datum.direction.sign) * shown.load;
         // no load is below none, and nobody hangs more than a rig bears
         if along < 0.0 || along > MOST * usual {
@@ -215,6 +218,31 @@ fn number(value: f64) -> String {
 fn shows(line: &Line, load: f64) -> bool {
     line.fit.slope.abs() * line.largest_load.max(load.abs()) > 2.0 * SCATTERS * line.fit.scatter
         && line.fit.slope.abs() > AGREE * line.fit.error
+}
+
+/// True where other rows of the same load show what this one does: not half as far from it as its
+/// load is `apart` from the one in the file, N. Friction, play and curves do.
+fn is_as_others(
+    data: &[Datum],
+    lines: &[Line],
+    line_of: &[Option<usize>],
+    own: &[usize],
+    apart: f64,
+) -> bool {
+    let from_others = own.iter().filter_map(|&i| {
+        let line = &lines[line_of[i]?];
+        let is_other = |other: &&usize| {
+            let other = &data[**other];
+            other.order != data[i].order
+                && other.direction == data[i].direction
+                && other.load == data[i].load
+                && other.is_unloading() == data[i].is_unloading()
+        };
+        let others: Vec<f64> = line.data.iter().filter(is_other).map(|&other| data[other].measured).collect();
+        Some((data[i].measured - median(&others)?).abs() < 0.5 * line.fit.slope.abs() * apart)
+    });
+    let from_others: Vec<bool> = from_others.collect();
+    !from_others.is_empty() && from_others.iter().all(|is_as_others| *is_as_others)
 }
 
 fn most_slope(lines: &[Line], line_of: &[Option<usize>], own: &[usize]) -> f64 {

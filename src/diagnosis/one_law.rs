@@ -14,7 +14,8 @@
 //! free, z the numbers of the files that it needs (in standard uncertainties), k its own numbers
 //! (G. Schwarz, Ann. Statist. 6, 1978). A curve that is needed beside the names is one of them. Of
 //! three names or more it is enough that a law needs fewer numbers and leaves as little. A law that
-//! is likelier by less is said beside the names.
+//! is likelier by less is said beside the names. A law of as many numbers that explains the same of
+//! the data as the names is no other one: their own formula.
 
 use std::collections::BTreeMap;
 
@@ -29,6 +30,9 @@ use crate::units::significant;
 const MANY: usize = 3;
 /// A curve has more numbers than these.
 const OF_CURVE: usize = 2;
+/// What a law and names explain is the same where the cosine between the two is larger: one differs
+/// from the other by a tenth of itself.
+const ALIKE: f64 = 0.995;
 /// A law that leaves at most so much more, as a factor, leaves as little as many names: these may
 /// have a curve beside them, which takes up a part of the scatter.
 const AS_LITTLE: f64 = 1.15;
@@ -68,7 +72,16 @@ pub(super) fn compared(proposed: &Proposed, without: &Diagnosis, named: &Diagnos
     let count = without.settled.0.residual.len() as f64;
     let more_numbers = numbers_of(law) as f64 - numbers as f64;
     let beside_names = curve.map_or_else(|| named.after.clone(), |curve| &named.after - &curve.shape);
-    let leaves_less = likelier(&without.settled.0, &beside_names, &DVector::from_column_slice(&law.left));
+    let left = DVector::from_column_slice(&law.left);
+    // as many numbers, and none of them says how it bends: the names say the same
+    let has_a_shape = law.constant.is_some() || !law.of_loop.is_empty() || law.second.is_some();
+    if !has_a_shape && more_numbers >= 0.0 {
+        let explained = [&named.before - &beside_names, &without.before - &left];
+        if are_alike(&without.settled.0, &explained) {
+            return None;
+        }
+    }
+    let leaves_less = likelier(&without.settled.0, &beside_names, &left);
     let log_odds = odds(leaves_less, farther, more_numbers, count);
     // both searches are repeated without each fold
     let own = law.held_out.into_iter().chain(proposed.held_out.map(|(_, with)| with));
@@ -88,6 +101,14 @@ pub(super) fn compared(proposed: &Proposed, without: &Diagnosis, named: &Diagnos
         false => (is_one && log_odds.min(leaves_less) > 0.0)
             .then(|| Instead::Rival(Limitation::LawForNames(description(law)))),
     }
+}
+
+/// True where two explain the same of the data, as these count.
+fn are_alike(evidence: &Evidence, [one, other]: &[DVector<f64>; 2]) -> bool {
+    let product = |a: &DVector<f64>, b: &DVector<f64>| -> f64 {
+        evidence.weight.iter().zip(a.iter().zip(b)).map(|(weight, (a, b))| weight * a * b).sum()
+    };
+    product(one, other) > ALIKE * (product(one, one) * product(other, other)).sqrt()
 }
 
 /// ln B of the law against the names.
@@ -145,6 +166,15 @@ mod tests {
     #[test]
     fn a_number_has_its_price() {
         assert!(odds(0.0, 0.0, 1.0, 60.0) < -2.0 && odds(0.0, -9.0, 0.0, 60.0) > NAMED.ln());
+    }
+
+    #[test]
+    fn what_explains_the_same_is_alike_whatever_its_size() {
+        let own = DVector::from_vec(vec![1.0, -1.0, 0.5, 0.2, -0.4, 0.1]);
+        let evidence = Evidence::new(own.clone());
+        let other = DVector::from_vec(vec![1.0, -1.0, 0.5, 0.2, -0.4, 0.4]);
+        assert!(are_alike(&evidence, &[own.clone(), &own * 0.9]));
+        assert!(!are_alike(&evidence, &[own.clone(), -&own]) && !are_alike(&evidence, &[own, other]));
     }
 
     /// Two runs of three readings, each with a zero of its own: what differs within is left.

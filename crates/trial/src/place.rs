@@ -101,6 +101,9 @@ pub enum AllJoints {
 }
 
 impl Place {
+    /// Before what is said more closely of a name: `all clamps, y into z`.
+    pub const CLOSER: &str = ", ";
+
     /// A part of rig, rod or robot.
     pub fn part(part: &str) -> Place {
         Place { part: Some(part.into()), ..Place::default() }

@@ -39,7 +39,7 @@ use self::held::{held, mostly_held, without_held};
 use self::may_be_meant::{ComparedRods, add_rivals};
 use self::motion::{beside_found, has_moved, measure_moves};
 use self::moves::Other;
-use self::quick::LoadedRobot;
+use self::quick::{LoadedRobot, zeros};
 use self::search::drifts::clocks;
 use self::search::{AdoptedStep, FittedDraft, MistakeSearch, SearchStep};
 use super::diagnose::{CalibrationDiagnosis, diagnose_calibrated};
@@ -286,9 +286,11 @@ impl Mended {
 fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Options) -> Result<Mended> {
     let mut mended = Mended { rods: others.rods.clone(), ..Mended::unchanged(campaign, mode, options) };
     let draft = Draft::of(campaign);
-    let readings = moves::robots::readings(campaign);
     let compensation = Compensation::new(campaign, mode)?;
-    let mut bodies = vec![LoadedRobot::new(&campaign.robot, compensation.clone(), campaign.tool, &draft)];
+    let as_filed = LoadedRobot::new(&campaign.robot, compensation.clone(), campaign.tool, &draft);
+    let mut readings = moves::robots::readings(campaign);
+    readings.extend(moves::links::links(campaign, &draft, &as_filed));
+    let mut bodies = vec![as_filed];
     let mut meant = Vec::new();
     for (file, rod) in &others.rods {
         let with = Campaign { rod: Some(rod.clone()), readings: None, ..campaign.clone() };
@@ -329,7 +331,8 @@ fn search(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Option
     let held = held(&draft);
     silent.extend(mostly_held(&draft, &held));
     let is_sure = silent.iter().any(|silent| !silent.only_if_failed);
-    let moves = moves::all(campaign, &draft, &meant, &forces, &robots, exchanged);
+    let zeros = zeros(&draft, &bodies[0]);
+    let moves = moves::all(campaign, &draft, &meant, &forces, &robots, exchanged, &zeros);
     let of_rows = moves::of_rows::of_rows(campaign, &draft);
     let clocks = clocks(&campaign.measurements);
     let tip_mass = campaign.rod.as_ref().map_or(0.0, |rod| rod.tip_mass);

@@ -254,9 +254,7 @@ pub fn place(effect: &Effect, site: &Site) -> Place {
             Some(group) => Place::named(&site.group_name(*group)),
             None => Place::named("all clamps"),
         },
-        Effect::Sensor { group, shown, along, .. } => {
-            sensor_place(site, *group, (shown == along).then_some(*shown))
-        }
+        Effect::Sensor { group, shown, along, .. } => sensor_place(site, *group, Some((*shown, *along))),
         Effect::Payload(_) => Place::part("flange"),
         Effect::TipMass(_) => Place::part("tip"),
         Effect::Lag { .. } | Effect::MoveHistory(_) => Place::all_joints(),
@@ -275,11 +273,17 @@ pub fn place(effect: &Effect, site: &Site) -> Place {
     }
 }
 
-/// The sensor of one axis in a clamp or in all of them, or all sensors there.
-pub fn sensor_place(site: &Site, group: Option<usize>, axis: Option<usize>) -> Place {
+/// The sensor of one axis in a clamp or in all of them, what it shows of a displacement along
+/// another one, or all sensors there.
+pub fn sensor_place(site: &Site, group: Option<usize>, shown_of: Option<(usize, usize)>) -> Place {
+    const AXES: [&str; 3] = ["x", "y", "z"];
     let clamp = group.map_or("all clamps".to_owned(), |group| site.group_name(group));
-    let axis = axis.map_or(String::new(), |axis| format!(", axis {}", ["x", "y", "z"][axis]));
-    Place::named(&(clamp + &axis))
+    let closer = match shown_of {
+        None => String::new(),
+        Some((shown, along)) if shown == along => format!(", axis {}", AXES[shown]),
+        Some((shown, along)) => format!(", {} into {}", AXES[along], AXES[shown]),
+    };
+    Place::named(&(clamp + &closer))
 }
 
 /// After the last row of the fixture before it moved.

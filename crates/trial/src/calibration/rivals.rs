@@ -228,7 +228,7 @@ fn of_sensors(list: &mut List<'_>) {
         };
         for axis in 0..3 {
             let column = shows(list, axis, axis);
-            list.add(EffectName::SensorScale, sensor_place(site, group, Some(axis)), vec![column]);
+            list.add(EffectName::SensorScale, sensor_place(site, group, Some((axis, axis))), vec![column]);
         }
         if group.is_none() {
             let all = (0..9).map(|k| shows(list, k / 3, k % 3)).collect();

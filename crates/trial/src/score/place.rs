@@ -40,6 +40,9 @@ pub fn is_same(truth: &GroundTruth, concealed: &Concealed, place: Option<&Place>
                 run(known) == run(place) && (known.channel == place.channel || !is_between(known))
             })
         }
+        // all nine errors of a device hold the one of them
+        EffectName::SensorScale => (concealed.place.name.as_deref())
+            .is_some_and(|name| place.name.as_deref() == name.split(Place::CLOSER).next()),
         // frames turned as a whole, about one axis or about all
         EffectName::SensorMisalignment | EffectName::LoadMisalignment => {
             is_frame(place) && known().any(is_frame)

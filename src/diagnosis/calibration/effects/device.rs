@@ -34,8 +34,8 @@ pub static SENSOR_SCALE: CalibrationEffect = CalibrationEffect {
         kind: Kind::Physics,
         summary: "a clamp's displacement sensors show too much, too little or cross-talk",
         formula: "R_c·(I − S⁻¹)·u: u the displacement in the device frame, R_c that frame in {W}; \
-                  S one factor along an axis, of one clamp or all, one cross-talk between two of one \
-                  clamp, or 3×3 of all (rotation of the device included)",
+                  S one factor along an axis or one cross-talk between two, of one clamp or all, \
+                  or 3×3 of all (rotation of the device included)",
         prior: "3 %: a displacement sensor that was not calibrated in place, or whose axis is off by 1.7°",
         parameters: &[
             (&["factor"], "shown over true displacement along the axis"),
@@ -96,9 +96,8 @@ fn devices(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
             let column = column(shown, along, is_there);
             single(&SENSOR_SCALE, Location::Named(cross_talk), parameter((shown, along)), column)
         })
-        // of all clamps the nine numbers below say it
-        .split_off(1)
     };
+    // one number of all clamps too: nine would pay for eight that are none
     entries.extend(pairs().filter(|(shown, along)| shown != along).flat_map(of_pair));
     // one device goes from clamp to clamp: of a single clamp nine numbers say what scatter does too
     let nine = pairs().map(|pair| (parameter(pair), column(pair.0, pair.1, &|_| true))).collect();

@@ -65,7 +65,7 @@ pub static DISTANCE_MISTAKE: Effect = Effect {
 /// A joint's zero by a quarter or half turn.
 pub static OFFSET_MISTAKE: Effect = Effect {
     name: "offset_mistake",
-    summary: "a joint's zero is off by a quarter or half turn, or by any angle in some rows",
+    summary: "a joint's zero is off by a quarter or half turn, or by any angle in some rows, or in all",
     formula: "true = recorded + constant",
     parameters: &[
         (&["deg"], "what must be added to the recorded angle"),
@@ -93,9 +93,9 @@ pub static ROW_MISTAKE: Effect = Effect {
 /// A frame read in another convention, or the other way round.
 pub static FRAME_MISTAKE: Effect = Effect {
     name: "frame_mistake",
-    summary: "a frame of base, tool or clamp, or gravity, is given in another convention, inverted, or in another frame",
-    formula: "another order of roll, pitch and yaw; the inverse; axes exchanged",
-    needs: "a stated base, a stated tool or rod, clamps; for gravity a robot file with masses",
+    summary: "a frame of base, tool or clamp, an angle, or gravity, is given in another convention, inverted, or in another frame",
+    formula: "another order of roll, pitch and yaw; the inverse; axes exchanged; an angle that holds that of the joint before",
+    needs: "a stated base, a stated tool or rod, clamps, or two parallel axes; for gravity a robot file with masses",
     cause: "a frame given in another way",
     cause_at: |location| at("a frame given in another way", location),
     ..NONE

@@ -95,9 +95,21 @@ fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
     let known = |joint: usize| play_in_file(&model.campaign.robot.effects, joint, taken_up);
     let known = finding.location.joint().map_or(0.0, known);
     let what = format!("The play of {}, {by},", finding.location.place());
-    let plain =
-        || format!("{} has {} of play, {by}", capital(&finding.location), first(finding).with_unit("µrad"));
+    let or_tool = match taken_up == TakenUp::ByTorque && may_be_tool(finding, model) {
+        true => ", or the tool is loose in its mount",
+        false => "",
+    };
+    let plain = || {
+        let play = first(finding).with_unit("µrad");
+        format!("{} has {play} of play, {by}{or_tool}", capital(&finding.location))
+    };
     on_top(&what, first(finding), "µrad", known).unwrap_or_else(plain)
+}
+
+/// True of the last joint: a tool that is loose in its mount along that joint's motion rests on the
+/// side to which its weight turns the joint, and moves the ball as its play does.
+fn may_be_tool(finding: &Finding, model: &CalibrationModel) -> bool {
+    finding.location.joint().is_some_and(|joint| joint + 1 == model.campaign.robot.joints.len())
 }
 
 /// Play by approach needs the order of the poses, wherever it is used.

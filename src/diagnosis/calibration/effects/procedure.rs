@@ -13,7 +13,7 @@ use crate::calibration::campaign::{Campaign, Row};
 use crate::inference::{
     Effect, Finding, JointVariable, Kind, Location, NotTestable, Part, Reported, Variable, WrittenTo,
 };
-use crate::robot;
+use crate::robot::{self, Motion};
 use crate::units::{HOUR, MM, UM};
 
 /// Share of a move that is not made yet when an angle is read.
@@ -28,22 +28,29 @@ const WARM_UP: f64 = 50.0 * UM;
 const LEAST_LINK: f64 = 20.0 * MM;
 /// How far from the base a tracker stands, m.
 const TRACKER: f64 = 3.0;
+/// How often it is the scale of a tracker that grows, over how often a base drifts.
+const SCALE_GROWS: f64 = 0.35;
 /// Time constants of a robot that warms up, as parts of the recording.
 const WARMING: [f64; 4] = [0.03, 0.1, 0.2, 0.4];
 
-/// Angles that were read before the arm had settled.
+/// Angles, or positions, that were read before the arm had settled.
 pub static READBACK_LAG: CalibrationEffect = CalibrationEffect {
     effect: Effect {
         name: "readback_lag",
         kind: Kind::Physics,
-        summary: "angles were read before the arm had settled",
+        summary: "angles, or positions, were read before the arm had settled",
         formula: "Σ Jⱼ·f·(qⱼ − qⱼ before): f is the share of the last move that was still to come \
-                  when q was read; of one joint, or of all with one share",
+                  when q was read, negative where it was when the position was measured; of one joint, \
+                  or of all with one share",
         prior: "3e-4: 100 to 1000 µrad of a move of 1 rad",
-        parameters: &[(&["fraction"], "share of the last move that was still to come")],
+        parameters: &[(
+            &["fraction"],
+            "share of the last move that was still to come when the angles were read; \
+             negative: when the position was measured",
+        )],
         needs: "rows in the order of recording",
-        cause: "angles were read before the arm had settled",
-        cause_at: |location| format!("angles read before the arm had settled ({location})"),
+        cause: "readings before the arm had settled",
+        cause_at: |location| format!("readings before the arm had settled ({location})"),
         written_to: WrittenTo::Model,
         reported: Reported::Alone,
         seen_along: |location| along(location, JointVariable::Move),
@@ -77,15 +84,17 @@ fn write_lag(finding: &Finding, _: &CalibrationModel, extended: &mut Campaign) -
     WrittenTo::Model
 }
 
-fn lag_observed(finding: &Finding, _: &CalibrationModel) -> String {
-    let whose = match finding.location.joint() {
-        Some(_) => finding.location.to_string(),
-        None => "every joint".into(),
+fn lag_observed(finding: &Finding, model: &CalibrationModel) -> String {
+    let (whose, motion) = match finding.location.joint() {
+        Some(joint) => (finding.location.to_string(), model.campaign.robot.joints[joint].motion),
+        None => ("every joint".into(), Motion::Revolute),
     };
-    format!(
-        "When the angles were read, {} of the last move of {whose} was still to come",
-        first(finding).map(|share| 100.0 * share).with_unit("%")
-    )
+    let unit = if motion == Motion::Prismatic { "µm per metre" } else { "µrad per radian" };
+    let share = first(finding);
+    // the sensor that is read late shows what is still to come
+    let read = if share.value < 0.0 { "positions were measured" } else { "angles were read" };
+    let size = share.map(|share| 1e6 * share).size().with_unit(unit);
+    format!("When the {read}, {size} of the last move of {whose} were still to come")
 }
 
 /// What follows temperature, time or order.
@@ -182,7 +191,11 @@ fn of_tracker(context: &Context, course: Course, values: &[f64]) -> Entry {
     let moved = |axis: usize| context.column(|row, _| unit(axis) * values[row]);
     parameters.extend(three(&[0, 1, 2].map(|axis| names[axis].as_str()), size, moved));
     let location = Location::Form { part: Part::Tracker, form: Warmed::Tracker.form(course) };
-    Entry::new(&THERMAL_DRIFT.effect, location, parameters).by(Law::Warms(course, Warmed::Tracker))
+    let mut entry =
+        Entry::new(&THERMAL_DRIFT.effect, location, parameters).by(Law::Warms(course, Warmed::Tracker));
+    // a base that drifts is a tracker whose scale does not grow, and the usual case
+    entry.candidate.weight = SCALE_GROWS;
+    entry
 }
 
 /// A joint's zero, or the length of its link, that follows what a drift follows.

@@ -54,6 +54,8 @@ pub(super) struct Tether {
 pub(super) enum DraftChange {
     /// true joint j = factor[j]·recorded[order[j]] + offset[j].
     Joints { order: Vec<usize>, factor: Vec<f64>, offset: Vec<f64> },
+    /// true joint = recorded − sign·recorded `to`: it was counted from what `to` does not turn.
+    Relative { joint: usize, to: usize, sign: f64 },
     /// true position = M·recorded.
     Seen(Matrix3<f64>),
     /// The positions of row i are those that stand in row i + k; with the clamps or without.
@@ -231,7 +233,7 @@ impl Draft {
 
     pub(super) fn apply(&mut self, change: &DraftChange) {
         match change {
-            DraftChange::Joints { .. } => {
+            DraftChange::Joints { .. } | DraftChange::Relative { .. } => {
                 for row in self.joints.chunks_mut(self.joint_count) {
                     change_joints(change, row);
                 }
@@ -384,10 +386,14 @@ fn named(mut names: Vec<String>, count: usize) -> Vec<String> {
 
 /// The joint values of one row as they are meant.
 pub(super) fn change_joints(change: &DraftChange, row: &mut [f64]) {
-    if let DraftChange::Joints { order, factor, offset } = change {
-        let recorded = row.to_vec();
-        for (j, value) in row.iter_mut().enumerate() {
-            *value = factor[j] * recorded[order[j]] + offset[j];
+    match change {
+        DraftChange::Joints { order, factor, offset } => {
+            let recorded = row.to_vec();
+            for (j, value) in row.iter_mut().enumerate() {
+                *value = factor[j] * recorded[order[j]] + offset[j];
+            }
         }
+        DraftChange::Relative { joint, to, sign } => row[*joint] -= sign * row[*to],
+        _ => {}
     }
 }

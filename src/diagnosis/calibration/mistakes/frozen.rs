@@ -16,9 +16,8 @@
 use super::draft::{Cell, Draft, DraftChange};
 use super::held::equal_neighbours;
 use super::names::{column, poses};
-use super::quick::{Worthwhile, fit};
+use super::quick::{FAILED, Worthwhile, fit};
 use super::search::part::{ELSEWHERE, Reference};
-use super::search::score::FAILED;
 use super::search::{FittedDraft, MistakeSearch};
 use super::slips::Slip;
 use crate::calibration::campaign::Recording;

@@ -4,6 +4,7 @@ pub(super) mod bodies;
 mod conventions;
 mod frames;
 mod joints;
+pub(super) mod links;
 pub(super) mod of_rows;
 mod positions;
 pub(super) mod robots;
@@ -56,7 +57,7 @@ impl PossibleMistake {
 pub struct Reading {
     pub robot: Robot,
     effect: &'static Effect,
-    key: &'static str,
+    key: String,
     log_prior: f64,
     estimates: Vec<Estimate>,
     cure: String,
@@ -82,9 +83,11 @@ pub(super) fn all(
     forces: &[(usize, f64)],
     robots: &[(usize, &Reading)],
     exchanged: Option<(usize, &Rod)>,
+    zeros: &[(usize, f64)],
 ) -> Vec<PossibleMistake> {
     let mut list = List { campaign, draft, moves: Vec::new(), is_of_rows: false };
     list.joints();
+    list.zeros(zeros);
     list.positions();
     list.rows();
     list.displaced_columns();

@@ -18,6 +18,7 @@ mod priors;
 mod residuals;
 mod rough;
 mod tether;
+mod zeros;
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
@@ -27,9 +28,10 @@ use self::means::{minus_means, without_means};
 use self::priors::{moved, prior_precision, sizes};
 pub(super) use self::residuals::from_points;
 use self::residuals::{FitState, load, residuals, tips};
-pub(super) use self::rough::placed;
 use self::rough::rough;
+pub(super) use self::rough::{FAILED, has_failed, left_by, placed};
 use self::tether::{pull, pulled};
+pub(super) use self::zeros::zeros;
 use super::draft::{Draft, DraftChange};
 use crate::calibration::growth::log_volume;
 use crate::calibration::least_value;

@@ -103,9 +103,11 @@ impl MistakeSearch<'_> {
             // beside one that fits only what is better counts
             let least = if self.has_failed(&best) { f64::NEG_INFINITY } else { best.score };
             let tried = self.extended(&best, least);
-            // no physics makes a first guess another one
-            let is_guess =
-                |state: &FittedDraft| state.steps.last().is_some_and(|step| self.change(step).is_guess());
+            // no physics makes a first guess another one, nor the zero that turns a base from it
+            let is_guess = |state: &FittedDraft| {
+                state.steps.last().is_some_and(|step| self.change(step).is_guess())
+                    || !self.has_failed(&best) && state.score - best.score < state.guess - best.guess
+            };
             // physics that explains what one change does competes with all others too
             let mut of_effects = f64::NEG_INFINITY;
             let is_next = |state: &&FittedDraft| {

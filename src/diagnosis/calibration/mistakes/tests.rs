@@ -1,3 +1,4 @@
+mod conventions;
 mod fixtures;
 mod frozen;
 mod held;

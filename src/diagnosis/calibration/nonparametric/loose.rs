@@ -28,12 +28,14 @@ use crate::units::DEG;
 
 /// Shares of its weight by which a tool is pressed before it slips.
 const STUCK: [f64; 3] = [0.25, 0.5, 0.75];
+/// The largest coordinate of a point that says along which line a tool is loose.
+const FINE: i32 = 2;
 /// Half of the range over which a tooth may be worn, rad.
 const WIDTHS: [f64; 3] = [20.0 * DEG, 35.0 * DEG, 60.0 * DEG];
 
 /// All that is no joint's reversal; those of each kind have the prior of one curve together.
 pub(super) fn all(context: &Context) -> Vec<Entry> {
-    let mut tools: Vec<Entry> = SIDES.iter().map(|side| tool(context, side)).collect();
+    let mut tools: Vec<Entry> = lines().iter().map(|side| tool(context, side)).collect();
     let mut sticking: Vec<Entry> = (STUCK.iter())
         .flat_map(|&share| SIDES.iter().map(move |side| (share, side)))
         .map(|(share, side)| stuck(context, share, side))
@@ -47,6 +49,17 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
     tools.extend(sticking);
     tools.extend(bearings);
     tools
+}
+
+/// Lines through the middle of a cube of five points along each edge. None is farther than 18° from
+/// any other line: a looseness along one that lies between them is none of the library's effects.
+fn lines() -> Vec<[f64; 3]> {
+    let numbers = || (-FINE..=FINE).map(f64::from);
+    let all = numbers().flat_map(|x| numbers().flat_map(move |y| numbers().map(move |z| [x, y, z])));
+    // one of two opposite points, the nearest along each line
+    let leads = |line: &[f64; 3]| line.iter().find(|x| **x != 0.0).is_some_and(|x| *x > 0.0);
+    let is_nearest = |line: &[f64; 3]| line.iter().any(|x| x.abs() == 1.0);
+    all.filter(|line| leads(line) && is_nearest(line)).collect()
 }
 
 fn tool(context: &Context, side: &[f64; 3]) -> Entry {
@@ -84,7 +97,7 @@ fn stuck(context: &Context, share: f64, side: &[f64; 3]) -> Entry {
     curve(label, follows, None, vectors(context, "stuck", SIZE, Frame::Tool, &|row| sides[row]))
 }
 
-/// `x`, `x + y`, `x − z`.
+/// `x`, `x + y`, `x − 2z`.
 fn named(side: &[f64; 3]) -> String {
     let mut name = String::new();
     for (number, letter) in side.iter().zip(["x", "y", "z"]).filter(|(number, _)| **number != 0.0) {
@@ -93,6 +106,9 @@ fn named(side: &[f64; 3]) -> String {
             (true, false) => name.push('−'),
             (false, true) => name.push_str(" + "),
             (false, false) => name.push_str(" − "),
+        }
+        if number.abs() != 1.0 {
+            name += &number.abs().to_string();
         }
         name.push_str(letter);
     }
@@ -173,11 +189,25 @@ pub(super) fn windows(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statistics::Random;
 
     #[test]
     fn directions_are_said_by_their_axes() {
         let names: Vec<String> =
-            [[1.0, 0.0, 0.0], [1.0, 0.0, -1.0], [-1.0, 1.0, 1.0]].iter().map(named).collect();
-        assert_eq!(names, ["x", "x − z", "−x + y + z"]);
+            [[1.0, 0.0, 0.0], [1.0, 0.0, -2.0], [-1.0, 1.0, 1.0]].iter().map(named).collect();
+        assert_eq!(names, ["x", "x − 2z", "−x + y + z"]);
+    }
+
+    #[test]
+    fn every_line_is_within_18_degrees_of_one_that_is_tried() {
+        let lines: Vec<Vector3<f64>> =
+            lines().into_iter().map(|line| Vector3::from(line).normalize()).collect();
+        assert_eq!(lines.len(), 49);
+        let mut random = Random::seeded(1, 1);
+        for _ in 0..2000 {
+            let any = Vector3::from_fn(|_, _| random.normal()).normalize();
+            let nearest = lines.iter().map(|line| line.dot(&any).abs()).fold(0.0, f64::max);
+            assert!(nearest > (18.0 * DEG).cos(), "{any}");
+        }
     }
 }

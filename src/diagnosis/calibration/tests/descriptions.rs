@@ -149,8 +149,8 @@ fn sentences_are_those_of_the_laws() {
         (
             "readback_lag",
             "all joints",
-            "When the angles were read, 0.060 ± 0.006 % of the last move of every joint was still to \
-             come: angles were read before the arm had settled",
+            "When the angles were read, 600 ± 60 µrad per radian of the last move of every joint were \
+             still to come: readings before the arm had settled",
         ),
         (
             "rod_stiffness",

@@ -157,6 +157,22 @@ fn a_readback_lag_is_no_backlash() {
     }
 }
 
+/// Of what was measured before the arm had settled the share has the other sign.
+#[test]
+fn what_was_read_late_is_said() {
+    let campaign = clamps(30);
+    let off = lag(&campaign);
+    for (sign, words) in [(1.0, "When the angles were read, "), (-1.0, "When the positions were measured, ")]
+    {
+        let recorded = recorded(&campaign, &|row| off[row] * sign, NOISE, 1);
+        let found = diagnose_as_recorded(&recorded, Mode::Fea, &Options::default()).unwrap();
+        let observed = &found.diagnosis.findings[0].description.observed;
+        let is_size =
+            observed.contains(" µrad per radian of the last move") && !observed.contains(['-', '−']);
+        assert!(observed.starts_with(words) && is_size, "{observed}");
+    }
+}
+
 /// Of the first pose nobody knows where the arm came from: what a lag may have done there is no
 /// outlier, six millimetres are one.
 #[test]

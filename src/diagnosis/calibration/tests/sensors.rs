@@ -1,7 +1,7 @@
 //! Displacement sensors of clamps that show too much, something of another axis, or no straight
 //! line; and what is none of them.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Rotation3, Unit};
 
 use super::*;
 use crate::inference::Finding;
@@ -104,11 +104,11 @@ fn cross_talk_is_named_with_its_axes_and_taken_out_of_the_points() {
     let found = diagnose_as_recorded(&wrong, Mode::Fea, &Options::default()).unwrap();
     let finding = &found.diagnosis.findings[0];
     assert_eq!(found.diagnosis.findings.len(), 1);
-    assert_eq!((finding.effect.name, finding.location.to_string()), ("sensor_scale", "all clamps".into()));
+    let place = finding.location.to_string();
+    assert_eq!((finding.effect.name, place.as_str()), ("sensor_scale", "all clamps, y into x"));
     assert_number(finding, "x_per_y", 0.12);
-    assert_number(finding, "y_per_y", 1.0);
     let observed = &finding.description.observed;
-    assert!(observed.contains("% of a displacement along y along x"), "{observed}");
+    assert!(observed.contains("along x also shows") && observed.contains("along y"), "{observed}");
     let mut extended = wrong.clone();
     let record = registry::record(finding.effect).unwrap();
     (record.write)(finding, &found.model, &mut extended);
@@ -121,6 +121,19 @@ fn cross_talk_is_named_with_its_axes_and_taken_out_of_the_points() {
         points(one).iter().zip(points(&right)).map(|(one, right)| (one - right).norm_squared()).sum()
     };
     assert!(off(&extended) < 0.05 * off(&wrong), "{} of {}", off(&extended), off(&wrong));
+}
+
+#[test]
+fn a_device_that_stands_turned_has_all_nine() {
+    let turned = Rotation3::from_axis_angle(&Unit::new_normalize(Vector3::new(0.5, 1.0, -0.7)), 0.2);
+    let wrong = shown(&clamps(30), &|u| turned * u, 5);
+    let found = diagnose_as_recorded(&wrong, Mode::Fea, &Options::default()).unwrap();
+    let finding = &found.diagnosis.findings[0];
+    assert_eq!((finding.effect.name, finding.location.to_string()), ("sensor_scale", "all clamps".into()));
+    assert_number(finding, "x_per_y", turned.matrix()[(0, 1)]);
+    assert_number(finding, "y_per_y", turned.matrix()[(1, 1)]);
+    let observed = &finding.description.observed;
+    assert!(observed.contains("the largest of their nine errors"), "{observed}");
 }
 
 #[test]

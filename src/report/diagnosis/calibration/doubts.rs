@@ -18,7 +18,11 @@ pub fn doubtful(found: &CalibrationDiagnosis) -> Option<String> {
         }
         _ => None,
     });
+    // where nothing fits, the tip is anywhere
     let elsewhere = || {
+        if found.is_implausible() {
+            return None;
+        }
         found.model.calibration.warnings.iter().find_map(|warning| match warning {
             Warning::TipElsewhere { calibrated, of_rod } => Some(format!(
                 "The tip is {} mm from where the rod's file has it: is that the file of this rod? What follows \

@@ -2,7 +2,7 @@
 
 use super::super::super::effects::mistakes::{ROBOT_MISTAKE, ROD_MISTAKE, SIGN_MISTAKE, UNIT_MISTAKE};
 use super::super::draft::DraftChange;
-use super::{List, Other, UNUSUAL, exact};
+use super::{List, Other, RARE, UNUSUAL, exact};
 use crate::calibration::campaign::Campaign;
 use crate::inference::Key;
 use crate::units::{POUND_FORCE, STANDARD_GRAVITY};
@@ -24,6 +24,8 @@ impl List<'_> {
     pub fn contact_forces(&mut self, forces: &[(usize, f64)]) {
         const KEY: &str = "contact_force_n";
         for &(body, factor) in forces {
+            // a kilogram is nearly ten newtons: the slip must be the rarer one
+            let is_decimal = factor == 10.0 || factor == 0.1;
             let (effect, cure, why) = if factor < 0.0 {
                 (
                     &SIGN_MISTAKE,
@@ -45,7 +47,8 @@ impl List<'_> {
                 (&UNIT_MISTAKE, format!("{way} {KEY} by {by}"), "its decimal point is in the wrong place")
             };
             let force = self.add(effect, Key::new(KEY), DraftChange::Body(body, None), &cure, why);
-            (force.log_prior, force.force) = (UNUSUAL, Some(factor));
+            let rarer = if is_decimal { RARE } else { 0.0 };
+            (force.log_prior, force.force) = (UNUSUAL + rarer, Some(factor));
             force.estimates = if factor < 0.0 { Vec::new() } else { exact("factor", factor) };
         }
     }

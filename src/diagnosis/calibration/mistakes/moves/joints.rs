@@ -2,7 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::super::super::effects::mistakes::{OFFSET_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE};
+use super::super::super::effects::mistakes::{
+    FRAME_MISTAKE, OFFSET_MISTAKE, SIGN_MISTAKE, SWAP_MISTAKE, UNIT_MISTAKE,
+};
 use super::super::draft::DraftChange;
 use super::conventions::TURN_IN_RADIANS;
 use super::{List, RARE, UNUSUAL, exact};
@@ -12,6 +14,10 @@ use crate::units::DEG;
 
 /// Degrees of a gon.
 const GON: f64 = 0.9;
+/// Axes are parallel within this sine, some three degrees.
+const PARALLEL: f64 = 0.05;
+/// Parts of a degree that angles are shown in.
+const PARTS: [(f64, &str); 3] = [(0.1, "tenths"), (0.01, "hundredths"), (0.001, "thousandths")];
 
 impl List<'_> {
     pub(super) fn joints(&mut self) {
@@ -73,6 +79,47 @@ impl List<'_> {
         }
         self.orders(count);
         self.angle_units(&turns, &every);
+        self.against_the_foot();
+    }
+
+    /// Zeros that are off by any angle, rad, in all rows.
+    pub(super) fn zeros(&mut self, zeros: &[(usize, f64)]) {
+        let count = self.draft.joint_count;
+        for &(j, by) in zeros {
+            let name = self.column(j);
+            let degrees = by / DEG;
+            let operation = match degrees > 0.0 {
+                true => format!("Add {degrees:.1}° to {name}"),
+                false => format!("Subtract {:.1}° from {name}", -degrees),
+            };
+            let why = format!("the joint's zero is off by {:.1}°", degrees.abs());
+            let change = DraftChange::offset(j, count, 1.0, by);
+            let zero = self.add(&OFFSET_MISTAKE, Key::new(&name), change, &operation, &why);
+            zero.estimates = exact("deg", degrees);
+            zero.log_prior = RARE;
+        }
+    }
+
+    /// A joint that is shown against the foot, as arms do whose motors of parallel axes stand
+    /// beside each other: its angle holds that of the joint before.
+    fn against_the_foot(&mut self) {
+        let joints = &self.campaign.robot.joints;
+        let is_parallel = |j: usize| {
+            let pair = [&joints[j], &joints[j + 1]];
+            pair.iter().all(|joint| joint.motion == Motion::Revolute)
+                && pair[0].link.alpha.sin().abs().max(pair[0].link.beta.sin().abs()) < PARALLEL
+        };
+        let parallel: Vec<usize> = (0..joints.len().saturating_sub(1)).filter(|&j| is_parallel(j)).collect();
+        for to in parallel {
+            let (name, other) = (self.column(to + 1), self.column(to));
+            for (sign, cure) in
+                [(1.0, format!("Subtract {other} from {name}")), (-1.0, format!("Add {other} to {name}"))]
+            {
+                let change = DraftChange::Relative { joint: to + 1, to, sign };
+                let why = "it is counted from the foot, not from the link before";
+                self.add(&FRAME_MISTAKE, Key::new(&name), change, &cure, why).log_prior = UNUSUAL;
+            }
+        }
     }
 
     fn orders(&mut self, count: usize) {
@@ -163,6 +210,14 @@ impl List<'_> {
                 );
                 twice.estimates = exact("factor", PI / 180.0);
                 twice.log_prior = log_prior + UNUSUAL;
+                for (factor, part) in PARTS {
+                    let change = DraftChange::factors(&joints, count, factor);
+                    let why = format!("{it} in {part} of a degree");
+                    let cure = format!("Multiply {name} by {factor}");
+                    let shown = self.add(&UNIT_MISTAKE, Key::new(&name), change, &cure, &why);
+                    shown.estimates = exact("factor", factor);
+                    shown.log_prior = log_prior;
+                }
             }
             let change = DraftChange::factors(&joints, count, GON);
             let why = format!("{it} in gon, 400 to the turn, not in degrees");

@@ -19,10 +19,14 @@ const ON_EARTH: f64 = 0.01;
 /// What a table may mean; a robot of the program's own, or one of a URDF, which has other keys and
 /// no gravity, means what it says.
 pub fn readings(campaign: &Campaign) -> Vec<Reading> {
-    if campaign.robot_file.starts_with("builtin:") || is_urdf(&campaign.robot_text) {
+    if !is_table(campaign) {
         return Vec::new();
     }
     lengths(&campaign.robot).chain([radians(&campaign.robot)]).chain(gravity(campaign)).collect()
+}
+
+pub(super) fn is_table(campaign: &Campaign) -> bool {
+    !campaign.robot_file.starts_with("builtin:") && !is_urdf(&campaign.robot_text)
 }
 
 /// Links in metres, centimetres, inches.
@@ -41,7 +45,7 @@ fn lengths(robot: &Robot) -> impl Iterator<Item = Reading> {
         Reading {
             robot,
             effect: &UNIT_MISTAKE,
-            key: "a_mm and d_mm",
+            key: "a_mm and d_mm".into(),
             log_prior: UNUSUAL,
             estimates: exact("factor", factor),
             cure: format!("Multiply a_mm and d_mm of all joints by {factor}"),
@@ -62,7 +66,7 @@ fn radians(robot: &Robot) -> Reading {
     Reading {
         robot,
         effect: &UNIT_MISTAKE,
-        key: "theta_offset_deg, alpha_deg and beta_deg",
+        key: "theta_offset_deg, alpha_deg and beta_deg".into(),
         log_prior: UNUSUAL,
         estimates: exact("factor", factor),
         cure: "Multiply theta_offset_deg, alpha_deg and beta_deg of all joints by 57.2958".into(),
@@ -86,7 +90,7 @@ fn gravity(campaign: &Campaign) -> Vec<Reading> {
         is_on_earth(robot.gravity.norm()).then(|| Reading {
             robot,
             effect: &UNIT_MISTAKE,
-            key: GRAVITY,
+            key: GRAVITY.into(),
             log_prior: 0.0,
             estimates: exact("factor", factor),
             cure: format!("Multiply {GRAVITY} by {by}"),
@@ -99,7 +103,7 @@ fn gravity(campaign: &Campaign) -> Vec<Reading> {
         all.push(Reading {
             robot: with(-given),
             effect: &SIGN_MISTAKE,
-            key: GRAVITY,
+            key: GRAVITY.into(),
             log_prior: UNUSUAL,
             estimates: Vec::new(),
             cure: format!("Multiply {GRAVITY} by −1"),
@@ -115,7 +119,7 @@ fn gravity(campaign: &Campaign) -> Vec<Reading> {
         all.push(Reading {
             robot: with(gravity),
             effect: &FRAME_MISTAKE,
-            key: GRAVITY,
+            key: GRAVITY.into(),
             log_prior: RARE,
             estimates: Vec::new(),
             cure: format!("Write {GRAVITY} = [{:?}, {:?}, {:?}]", gravity.x, gravity.y, gravity.z),
@@ -126,7 +130,7 @@ fn gravity(campaign: &Campaign) -> Vec<Reading> {
         all.push(Reading {
             robot: with(Vector3::new(0.0, 0.0, -STANDARD_GRAVITY)),
             effect: &TYPING_MISTAKE,
-            key: GRAVITY,
+            key: GRAVITY.into(),
             log_prior: 0.0,
             estimates: Vec::new(),
             cure: format!("Write {GRAVITY} = [0.0, 0.0, -9.80665]"),
@@ -149,7 +153,7 @@ impl List<'_> {
     pub fn robots(&mut self, readings: &[(usize, &Reading)]) {
         for (body, reading) in readings {
             let Reading { effect, key, log_prior, estimates, cure, why, .. } = reading;
-            let found = self.add(effect, Key::new(*key), DraftChange::Body(*body, None), cure, why);
+            let found = self.add(effect, Key::new(key), DraftChange::Body(*body, None), cure, why);
             (found.log_prior, found.estimates) = (*log_prior, estimates.clone());
         }
     }

@@ -5,12 +5,17 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::super::draft::Draft;
 use super::density::{MEDIAN, weight_of};
+use super::loaded_robot::LoadedRobot;
 use super::means::minus_means;
 use crate::robot::Robot;
 use crate::spatial::Pose;
 use crate::statistics::median;
 
+/// A fit that leaves more, as a share of the reach, fails.
+pub const FAILED: f64 = 5e-3;
 const MOST_TURNS: usize = 12;
+/// Rows of which the median says what the nominal robot leaves.
+const ENOUGH: usize = 60;
 /// Times that the middle of a socket is looked for roughly.
 const ROUGH_MEANS: usize = 4;
 
@@ -19,6 +24,16 @@ pub(super) struct Rough {
     pub bases: Vec<Pose>,
     pub tool: Vector3<f64>,
     pub median: f64,
+}
+
+/// What the nominal robot leaves, m (median), of rows that are enough to see it.
+pub fn left_by(draft: &Draft, robot: &Robot, reach: f64) -> f64 {
+    rough(&draft.thinned(ENOUGH), robot, reach).map_or(f64::INFINITY, |rough| rough.median)
+}
+
+/// True where that is more than any robot leaves.
+pub fn has_failed(draft: &Draft, body: &LoadedRobot) -> bool {
+    left_by(draft, body.robot, body.reach) > FAILED * body.reach
 }
 
 /// Where base and tool are by a robot whose tip is `reach` (m) away from its first joint at most;

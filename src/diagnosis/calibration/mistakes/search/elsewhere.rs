@@ -4,9 +4,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::super::draft::{Draft, DraftChange, Tether};
 use super::super::motion::moved;
-use super::super::quick::{Fit, Worthwhile, fit_from};
+use super::super::quick::{FAILED, Fit, Worthwhile, fit_from};
 use super::moved_fixtures::KNOCKED;
-use super::score::FAILED;
 use super::{FittedDraft, MistakeSearch, ODDS, SearchStep};
 use crate::statistics::median;
 use crate::units::MM;

@@ -37,9 +37,9 @@ const UNLIKE: f64 = 0.4;
 /// A displacement in a clamp is distinguished from none, or from another one, where it is so many
 /// scatters large.
 const DISTINCT: f64 = 10.0;
-/// Least step of a joint's zero that somebody made: a coupling slips by half a milliradian or so by
+/// Least step of a joint's zero that somebody made: a coupling slips by a milliradian or two by
 /// itself, rad (m of a prismatic joint).
-const LEAST_ZERO: f64 = 0.05 * DEG;
+const LEAST_ZERO: f64 = 0.15 * DEG;
 /// Stretches that become states, of each reference.
 const MOST: usize = 3;
 

@@ -10,7 +10,7 @@
 
 use super::super::draft::{Draft, DraftChange, Rows};
 use super::super::motion::moved;
-use super::super::quick::{Fit, ln_volume};
+use super::super::quick::{FAILED, Fit, ln_volume};
 use super::{FittedDraft, MistakeSearch, SearchStep};
 use crate::statistics::median;
 use crate::units::{DEG, MM};
@@ -21,8 +21,6 @@ const RARE: f64 = -4.0;
 const MOVED: f64 = -20.0;
 /// That of a clamp that stands elsewhere, or is turned: its three numbers, and which.
 const FIXTURE: f64 = -12.0;
-/// A fit that leaves more, as a share of the reach, fails.
-pub const FAILED: f64 = 5e-3;
 /// How sure a stated base is: share of the reach, rad; and a stated tip: m and share of its length.
 /// Then what it costs at most that it was a rough guess, ln.
 const BASE: (f64, f64, f64) = (0.03, 2.0 * DEG, 24.0);

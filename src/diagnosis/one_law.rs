@@ -132,7 +132,7 @@ fn description(law: &Law) -> String {
 }
 
 fn numbers_of(law: &Law) -> usize {
-    let own = law.amplitudes.len() + usize::from(law.constant.is_some()) + law.of_loop.len();
+    let own = law.amplitudes.len() + usize::from(law.constant.is_some()) + law.of_shape.len();
     own + law.second.as_ref().map_or(0, |second| numbers_of(&second.law))
 }
 

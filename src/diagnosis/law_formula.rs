@@ -34,6 +34,10 @@ pub(super) fn formula(law: &Law, x: &str, is_signed: bool, direction: usize) -> 
         Form::Pull => format!("{a}*{sign}(1/({corner} - {size})^2 - 1/{corner}^2)"),
         Form::PullBelow | Form::PullAbove => format!("{a}/({x} - {corner})^2"),
         Form::Threshold => format!("{a}*max({x} - {corner}, 0)"),
+        Form::PowerBeyond(_) => format!("{a}*(max({x} - {corner}, 0)/({largest:?} - {corner}))^p"),
+        Form::Rough(_) => {
+            format!("{a}*v*(ln(1 + exp(({x} - {corner})/v)) - ln(1 + exp(-{corner}/v)))")
+        }
         Form::Step => format!("{a}*step({x} - {corner})"),
         Form::Approach => format!("{a}*{sign}(1 - exp(-{size}/{corner}))"),
         Form::Decay => format!("{a}*{sign}exp(-{size}/{corner})"),

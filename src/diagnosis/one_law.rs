@@ -74,7 +74,7 @@ pub(super) fn compared(proposed: &Proposed, without: &Diagnosis, named: &Diagnos
     let beside_names = curve.map_or_else(|| named.after.clone(), |curve| &named.after - &curve.shape);
     let left = DVector::from_column_slice(&law.left);
     // as many numbers, and none of them says how it bends: the names say the same
-    let has_a_shape = law.constant.is_some() || !law.of_loop.is_empty() || law.second.is_some();
+    let has_a_shape = law.constant.is_some() || !law.of_shape.is_empty() || law.second.is_some();
     if !has_a_shape && more_numbers >= 0.0 {
         let explained = [&named.before - &beside_names, &without.before - &left];
         if are_alike(&without.settled.0, &explained) {
@@ -153,7 +153,7 @@ fn description(law: &Law) -> String {
 }
 
 fn numbers_of(law: &Law) -> usize {
-    let own = law.amplitudes.len() + usize::from(law.constant.is_some()) + law.of_loop.len();
+    let own = law.amplitudes.len() + usize::from(law.constant.is_some()) + law.of_shape.len();
     own + law.second.as_ref().map_or(0, |second| numbers_of(&second.law))
 }
 

@@ -58,7 +58,7 @@ fn unsure(law: &Law, scanned: &Scanned, (remainder, size): (&Remainder, f64), x:
             let own = choice.columns(&law.site, *u, size);
             let (factors, covariance) = remainder.factors(&own.columns);
             let g = DVector::from_fn(count, |j, _| {
-                let function = |x: f64| law.form.functions(x / largest, s)[j];
+                let function = |x: f64| choice.form.functions(x / largest, s)[j];
                 let (level, slope) = line(&xs, &function);
                 (function(x) - level - slope * x) * own.amplitudes[direction * count + j]
             });

@@ -50,6 +50,8 @@ impl Choice {
                         Form::PowerAfterGap
                             | Form::Rounded
                             | Form::Threshold
+                            | Form::PowerBeyond(_)
+                            | Form::Rough(_)
                             | Form::Harmonic
                             | Form::Oscillation
                             | Form::Pull
@@ -74,7 +76,7 @@ impl Choice {
 
     /// True for the same law, whatever its numbers.
     pub fn is(&self, other: &Choice) -> bool {
-        self.site == other.site && self.form == other.form && self.memory.is(other.memory)
+        self.site == other.site && self.form.is(other.form) && self.memory.is(other.memory)
     }
 
     /// What its number that is not linear is.
@@ -102,11 +104,6 @@ impl Choice {
                 self.form.grid((low / largest, high / largest), site.levels())
             }
         }
-    }
-
-    /// The same with another memory of its kind.
-    pub fn remembering(self, memory: Memory) -> Choice {
-        Choice { memory, ..self }
     }
 
     /// The number at a coordinate, in the form's scale.

@@ -28,8 +28,8 @@ const CURVE: usize = 6;
 const POINTS: usize = 60;
 /// Data that the law moves by less than this share of the largest are not drawn.
 const DRAWN: f64 = 0.2;
-/// Ln of the odds by which the probability of a loop may be off: its shape has two constants, of
-/// which Laplace's integral is that of a normal distribution, and they are near their bounds.
+/// Ln of the odds by which the probability of a law of several numbers may be off: they are near
+/// their bounds, and of what has edges there are few points.
 const UNSURE: f64 = 1.0;
 /// Rivals that are reported, the likeliest, and the likeliest of every other place.
 const MOST_RIVALS: usize = 8;
@@ -84,13 +84,13 @@ pub(super) fn described(
     let site = all[best.choice.site].clone();
     let columns = best.choice.columns(&site, best.at, size);
     let fitted = remainder.fit(&columns.columns);
-    let Measured { amplitudes, constant, of_loop, correlation, values } = measured.into_iter().next()?;
+    let Measured { amplitudes, constant, of_shape, correlation, values } = measured.into_iter().next()?;
     let mut law = Law {
         form: best.choice.form,
         memory: best.choice.memory,
         amplitudes,
         constant,
-        of_loop,
+        of_shape,
         correlation,
         values,
         log_odds: (best.log_odds, best.log_odds - curve),
@@ -138,7 +138,7 @@ fn beside(known: &Known, base: &DVector<f64>) -> Beside {
 
 /// The best law and all that are not 20 times less likely, or as much more as the odds are unsure.
 pub(super) fn alike<'a>(found: &'a Scan, best: &Scanned) -> Vec<&'a Scanned> {
-    let unsure = if best.choice.memory.has_shape() { UNSURE } else { 0.0 };
+    let unsure = if best.choice.has_shape() { UNSURE } else { 0.0 };
     let near = found.laws.iter().take_while(|law| law.log_odds > best.log_odds - APART.ln() - unsure);
     let mut sites = Vec::new();
     // many forms of one place do not hide another place

@@ -1,10 +1,11 @@
-//! Forms of a law: functions of a scaled variable, with one number at most that is not linear.
+//! Forms of a law: functions of a scaled variable, with one number at most that is not linear, or
+//! two of which one is an exponent.
 
 use std::f64::consts::TAU;
 
 /// What a law looks like over its variable. ξ = x/X; functions of a variable with two signs are
 /// odd.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Form {
     /// a·ξᵖ.
@@ -17,6 +18,11 @@ pub enum Form {
     Rounded,
     /// a·max(ξ − ξ₀, 0): it grows from ξ₀ on.
     Threshold,
+    /// a·(max(ξ − ξ₀, 0)/(1 − ξ₀))ᵖ of this p: a contact that begins at ξ₀.
+    PowerBeyond(f64),
+    /// k·v·(ln(1 + e^((ξ − ξ₀)/v)) − ln(1 + e^(−ξ₀/v))) of this v: a threshold that bends little by
+    /// little, as rough surfaces do that meet (J. A. Greenwood, J. B. P. Williamson 1966).
+    Rough(f64),
     /// a where ξ > ξ₀.
     Step,
     /// a·(1 − e^(−ξ/ξ₀)).
@@ -46,7 +52,7 @@ pub enum Form {
 pub enum FormConstant {
     /// p.
     Exponent,
-    /// ξ₀ of a saturation, a threshold or a step: a value of the variable.
+    /// ξ₀ of a saturation, a threshold, a power beyond one or a step: a value of the variable.
     Corner,
     /// ξ₀ of an approach, a decay or a logarithm: a length along the variable.
     Scale,
@@ -77,7 +83,7 @@ const NEAREST: f64 = 1e-6;
 /// Points of a first look at a number that is not linear.
 const POINTS: usize = 21;
 /// Cycles over the range of the variable: fewer are a bend, more than so many nobody looks for.
-const CYCLES: (f64, f64) = (0.3, 60.0);
+const CYCLES: (f64, f64) = (1.0, 60.0);
 /// Distance of two frequencies in cycles over the range: a wave of one is still half in step with
 /// that of the other.
 const APART: f64 = 0.15;
@@ -85,13 +91,21 @@ const APART: f64 = 0.15;
 const LEVELS_OF_A_WAVE: usize = 6;
 
 impl Form {
+    /// A power beyond a threshold, of the exponent of a Hertzian contact over its approach.
+    pub const CONTACT: Form = Form::PowerBeyond(1.5);
+
+    /// A rounded threshold of some width.
+    pub const ROUGH: Form = Form::Rough(0.1);
+
     /// All of them.
-    pub const ALL: [Form; 18] = [
+    pub const ALL: [Form; 20] = [
         Form::Power,
         Form::PowerAfterGap,
         Form::Saturation,
         Form::Rounded,
         Form::Threshold,
+        Form::CONTACT,
+        Form::ROUGH,
         Form::Step,
         Form::Approach,
         Form::Decay,
@@ -114,6 +128,8 @@ impl Form {
         Form::Saturation,
         Form::Rounded,
         Form::Threshold,
+        Form::CONTACT,
+        Form::ROUGH,
         Form::Step,
         Form::Approach,
         Form::Decay,
@@ -133,6 +149,8 @@ impl Form {
         Form::Saturation,
         Form::Rounded,
         Form::Threshold,
+        Form::CONTACT,
+        Form::ROUGH,
         Form::Step,
         Form::Approach,
         Form::Logarithm,
@@ -177,6 +195,8 @@ impl Form {
             Form::Saturation => "saturation",
             Form::Rounded => "rounded saturation",
             Form::Threshold => "threshold with slope",
+            Form::PowerBeyond(_) => "power beyond a threshold",
+            Form::Rough(_) => "rounded threshold with slope",
             Form::Step => "step",
             Form::Approach => "exponential approach",
             Form::Decay => "exponential decay",
@@ -190,9 +210,18 @@ impl Form {
         }
     }
 
+    /// True for the same, whatever its exponent.
+    pub fn is(self, other: Form) -> bool {
+        match (self, other) {
+            (Form::PowerBeyond(_), Form::PowerBeyond(_)) | (Form::Rough(_), Form::Rough(_)) => true,
+            _ => self == other,
+        }
+    }
+
     /// True for one that has neither a corner nor waves: two of them are no two laws.
     pub fn is_gradual(self) -> bool {
-        let has_corner = matches!(self, Form::Saturation | Form::Threshold | Form::Step);
+        let has_corner =
+            matches!(self, Form::Saturation | Form::Threshold | Form::PowerBeyond(_) | Form::Step);
         !has_corner && !self.is_wave()
     }
 
@@ -215,7 +244,9 @@ impl Form {
     pub fn constant(self) -> Option<FormConstant> {
         match self {
             Form::Power | Form::PowerAfterGap => Some(FormConstant::Exponent),
-            Form::Saturation | Form::Threshold | Form::Step => Some(FormConstant::Corner),
+            Form::Saturation | Form::Threshold | Form::PowerBeyond(_) | Form::Rough(_) | Form::Step => {
+                Some(FormConstant::Corner)
+            }
             Form::Approach | Form::Decay | Form::Settling | Form::Logarithm | Form::Rounded => {
                 Some(FormConstant::Scale)
             }
@@ -236,6 +267,8 @@ impl Form {
             Form::Saturation => one(odd(&|xi| (xi / s).min(1.0))),
             Form::Rounded => one((xi / s).tanh()),
             Form::Threshold => one((xi - s).max(0.0)),
+            Form::Rough(v) => one(v * (soft((xi - s) / v) - soft(-s / v))),
+            Form::PowerBeyond(p) => one(((xi - s).max(0.0) / (1.0 - s)).powf(p)),
             Form::Step => one(if xi > s { 1.0 } else { 0.0 }),
             Form::Approach => one(odd(&|xi| -(-xi / s).exp_m1())),
             Form::Decay => one(odd(&|xi| (-xi / s).exp())),
@@ -278,6 +311,8 @@ impl Form {
             | Form::Oscillation => true,
             Form::Saturation
             | Form::Threshold
+            | Form::PowerBeyond(_)
+            | Form::Rough(_)
             | Form::Step
             | Form::Pull
             | Form::PullBelow
@@ -297,7 +332,7 @@ impl Form {
             let (first, last) = (AWAY.0.ln(), AWAY.1.ln());
             (0..POINTS).map(move |k| (first + (last - first) * k as f64 / (POINTS - 1) as f64).exp())
         };
-        let constants = self.count() + usize::from(self.constant().is_some());
+        let constants = self.count() + usize::from(self.constant().is_some()) + self.shape().len();
         if levels <= constants {
             return Vec::new();
         }
@@ -309,7 +344,7 @@ impl Form {
             Form::PullBelow => away().rev().map(|distance| low - distance * (high - low)).collect(),
             Form::Logarithm => logs(LOGARITHM),
             Form::Saturation => between(SATURATION, POINTS),
-            Form::Threshold | Form::Step => {
+            Form::Threshold | Form::PowerBeyond(_) | Form::Rough(_) | Form::Step => {
                 let inset = 0.5 / levels.min(POINTS) as f64 * (high - low);
                 between((low + inset, high - inset), POINTS)
             }
@@ -325,6 +360,11 @@ impl Form {
             Form::Polynomial(_) => vec![0.0],
         }
     }
+}
+
+/// ln(1 + e^x).
+fn soft(x: f64) -> f64 {
+    x.max(0.0) + (-x.abs()).exp().ln_1p()
 }
 
 /// 1/d², of no distance that is nothing.
@@ -347,6 +387,13 @@ mod tests {
         assert_eq!((at(Form::Saturation, 0.2, 0.4), at(Form::Saturation, 0.9, 0.4)), (0.5, 1.0));
         assert_eq!((at(Form::Threshold, 0.2, 0.5), at(Form::Threshold, 0.75, 0.5)), (0.0, 0.25));
         assert_eq!((at(Form::Step, 0.5, 0.5), at(Form::Step, 0.6, 0.5)), (0.0, 1.0));
+        let rough = |xi: f64| at(Form::Rough(0.1), xi, 0.5);
+        assert!(
+            rough(0.0) == 0.0 && (rough(0.5) - 0.1 * (2.0f64.ln() - (-5.0f64).exp().ln_1p())).abs() < 1e-15
+        );
+        assert!((rough(90.0) - rough(89.0) - 1.0).abs() < 1e-12);
+        let beyond = |xi: f64| at(Form::PowerBeyond(1.5), xi, 0.2);
+        assert!(beyond(0.2) == 0.0 && (beyond(0.4) - 0.125).abs() < 1e-15 && beyond(1.0) == 1.0);
         assert!((at(Form::Approach, 1.0, 1.0) - (1.0 - (-1.0f64).exp())).abs() < 1e-15);
         assert!((at(Form::Logarithm, 1.0, 0.5) - 3.0f64.ln()).abs() < 1e-15);
         assert!((at(Form::Decay, 1.0, 0.5) - (-2.0f64).exp()).abs() < 1e-15);
@@ -364,7 +411,7 @@ mod tests {
     #[test]
     fn corners_and_waves_are_laws_beside_others() {
         let gradual = Form::ALL.into_iter().filter(|form| form.is_gradual()).count();
-        assert_eq!(gradual, Form::ALL.len() - 5);
+        assert_eq!(gradual, Form::ALL.len() - 6);
         assert!(Form::Power.is_gradual() && !Form::Threshold.is_gradual() && !Form::Harmonic.is_gradual());
     }
 

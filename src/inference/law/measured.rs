@@ -21,8 +21,8 @@ const MOST_OTHERS: usize = 5;
 pub(super) struct Measured {
     pub amplitudes: Vec<Constant>,
     pub constant: Option<(FormConstant, Constant)>,
-    /// Of the shape of its loop.
-    pub of_loop: Vec<Constant>,
+    /// Others that are not linear.
+    pub of_shape: Vec<Constant>,
     /// Of all of them, in this order.
     pub correlation: DMatrix<f64>,
     pub values: (Vec<f64>, f64),
@@ -53,7 +53,7 @@ impl Measured {
         Measured {
             amplitudes: (0..mode.len()).map(amplitude).collect(),
             constant,
-            of_loop: of_loop(site, law),
+            of_shape: of_shape(site, law),
             correlation: correlation(&covariance),
             values: (mode, choice.at(best)),
         }
@@ -61,7 +61,7 @@ impl Measured {
 }
 
 /// Mean and covariance of amplitudes (SI), the number that is not linear (in its unit) and those of
-/// the shape of a loop.
+/// its shape.
 fn moments(remainder: &Remainder, site: &Site, law: &Scanned, size: f64) -> (DVector<f64>, DMatrix<f64>) {
     let draws = law.even(DRAWS);
     let share = 1.0 / draws.len() as f64;
@@ -72,7 +72,7 @@ fn moments(remainder: &Remainder, site: &Site, law: &Scanned, size: f64) -> (DVe
         let count = amplitudes.len();
         let mut values: Vec<f64> = factors.iter().zip(&amplitudes).map(|(f, a)| f * a).collect();
         values.extend(choice.constant().map(|what| along(site, what, choice.at(u))));
-        let of_shape = choice.memory.of_shape(width(site, choice, u)).into_iter();
+        let of_shape = choice.of_shape(widths(site, choice, u)).into_iter();
         values.extend(of_shape.map(|own| own.value));
         let values = DVector::from_vec(values);
         let mut square = &values * values.transpose();
@@ -135,7 +135,8 @@ fn names(site: &Site, form: Form) -> Vec<(String, String, String, f64)> {
     let of_form: Vec<(&str, &str, i8)> = match form {
         Form::Harmonic => vec![("a", "cosine", 0), ("b", "sine", 0)],
         Form::Oscillation => vec![("a", "cosine", 0), ("b", "sine", 0), ("c", "level", 0)],
-        Form::Threshold => vec![("k", "slope", 1)],
+        Form::Threshold | Form::Rough(_) => vec![("k", "slope", 1)],
+        Form::PowerBeyond(_) => vec![("a", "value at the largest", 0)],
         Form::Step => vec![("a", "height", 0)],
         Form::Saturation | Form::Approach | Form::Rounded => vec![("a", "final value", 0)],
         Form::Pull | Form::PullBelow | Form::PullAbove => vec![("k", "strength", -2)],
@@ -167,19 +168,20 @@ fn bracketed(unit: &str) -> String {
     if unit.contains('·') || unit.contains('/') { format!("({unit})") } else { unit.to_owned() }
 }
 
-/// How wide its memory is, in the unit of the variable.
-fn width(site: &Site, choice: Choice, u: f64) -> f64 {
-    choice.at(u) * site.largest() / site.variable.si
+/// How wide its memory is, and X, in the unit of the variable.
+fn widths(site: &Site, choice: Choice, u: f64) -> (f64, f64) {
+    let largest = site.largest() / site.variable.si;
+    (choice.at(u) * largest, largest)
 }
 
-/// The numbers of the shape of a loop.
-fn of_loop(site: &Site, law: &Scanned) -> Vec<Constant> {
+/// Numbers of its shape.
+fn of_shape(site: &Site, law: &Scanned) -> Vec<Constant> {
     let Some(peak) = &law.peak else { return Vec::new() };
-    let own = law.choice.memory.of_shape(width(site, law.choice, law.at));
+    let own = law.choice.of_shape(widths(site, law.choice, law.at));
     let measured = |(k, own): (usize, OfShape)| {
         let at = |point: &DVector<f64>| {
             let (choice, u) = at_point(law.choice, point);
-            choice.memory.of_shape(width(site, choice, u)).get(k).map_or(own.value, |own| own.value)
+            choice.of_shape(widths(site, choice, u)).get(k).map_or(own.value, |own| own.value)
         };
         let (low, high) = peak.interval(&at, own.range);
         Constant {

@@ -55,8 +55,8 @@ pub struct Law {
     pub amplitudes: Vec<Constant>,
     /// Its number that is not linear.
     pub constant: Option<(FormConstant, Constant)>,
-    /// Of the shape of its loop, where it remembers by one.
-    pub of_loop: Vec<Constant>,
+    /// The others that are not linear: the shape of its loop, an exponent beyond a threshold.
+    pub of_shape: Vec<Constant>,
     /// Correlation coefficients of all constants, in their order.
     pub correlation: DMatrix<f64>,
     /// The same as numbers: amplitudes (SI) of each direction's functions, s.
@@ -186,7 +186,8 @@ impl Law {
         let are_two = self.memory.has_constant() && constants[0].zip(constants[1]).is_some_and(is_apart);
         (&self.site.location, &self.site.variable, &self.site.result)
             == (&other.site.location, &other.site.variable, &other.site.result)
-            && (self.form, &self.memory) == (other.form, &other.memory)
+            && self.form.is(other.form)
+            && self.memory == other.memory
             && !are_two
             && a.dot(&b).abs() > SAME * a.norm() * b.norm()
     }
@@ -233,7 +234,7 @@ impl Law {
             memory: Memory::None,
             amplitudes,
             constant,
-            of_loop: Vec::new(),
+            of_shape: Vec::new(),
             correlation: DMatrix::zeros(0, 0),
             values,
             log_odds: (0.0, 0.0),
@@ -261,7 +262,7 @@ impl Law {
     /// All of its constants.
     pub fn constants(&self) -> impl Iterator<Item = &Constant> {
         let of_form = self.constant.iter().map(|(_, constant)| constant);
-        self.amplitudes.iter().chain(of_form).chain(&self.of_loop)
+        self.amplitudes.iter().chain(of_form).chain(&self.of_shape)
     }
 
     /// The law at x (SI) in a direction, SI; what a memory makes of the variable is x.

@@ -57,10 +57,10 @@ impl Scanned {
     }
 }
 
-/// A loop with its numbers: the coordinate of its width, and its shape.
+/// A law of several numbers with them: the coordinate of the first, and its shape.
 pub(super) fn at_point(choice: Choice, point: &DVector<f64>) -> (Choice, f64) {
     let numbers = point.as_slice();
-    (choice.remembering(choice.memory.shaped(&numbers[1..])), numbers[0])
+    (choice.shaped(&numbers[1..]), numbers[0])
 }
 
 /// Everything that was tried, the likeliest first.
@@ -172,9 +172,11 @@ pub(super) fn scan_some(
         let of_choice = |&choice: &Choice| {
             let grid = choice.grid(&sites[number]);
             let own = |choice: Choice| (choice, Posterior::new(&grid, &|us| evidence(choice, us)));
-            let shapes = choice.memory.first_shapes().into_iter();
-            let shaped = shapes.map(|memory| own(choice.remembering(memory)));
-            let likeliest = shaped.reduce(|a, b| if b.1.best().1 > a.1.best().1 { b } else { a });
+            let likeliest = choice
+                .first_shapes()
+                .into_iter()
+                .map(own)
+                .reduce(|a, b| if b.1.best().1 > a.1.best().1 { b } else { a });
             likeliest.unwrap_or_else(|| own(choice))
         };
         let laws: Vec<(Choice, Posterior)> = choices.iter().filter(|c| is_tried(c)).map(of_choice).collect();
@@ -186,7 +188,7 @@ pub(super) fn scan_some(
     let mut first = Vec::new();
     for (number, (laws, curve)) in by_site.into_iter().enumerate() {
         let even = prior(places, all[number].len());
-        let prior = |choice: &Choice| even + (sites[number].share(choice.form) * choice.memory.share()).ln();
+        let prior = |choice: &Choice| even + (sites[number].share(choice.form) * choice.share()).ln();
         first.extend(laws.into_iter().map(|(choice, posterior)| (choice, posterior, prior(&choice))));
         if let Some(curve) = curve.filter(|curve| best_curve.is_none_or(|(_, best)| *curve > best)) {
             best_curve = Some((number, curve));
@@ -195,7 +197,7 @@ pub(super) fn scan_some(
     // at most so much its odds may be
     let peak = |(choice, posterior, prior): &(Choice, Posterior, f64)| {
         let most = posterior.best().1;
-        let numbers = usize::from(choice.constant().is_some()) + choice.memory.shape().len();
+        let numbers = usize::from(choice.constant().is_some()) + choice.shape().len();
         most + MISSED * numbers as f64 * most.max(0.0) + prior
     };
     let sure = |law: &(Choice, Posterior, f64)| law.1.best().1 + law.2;
@@ -204,10 +206,10 @@ pub(super) fn scan_some(
     let closer: Vec<bool> = first.iter().map(|law| peak(law) > (highest - BEHIND).max(0.0)).collect();
     let mut laws = in_parallel(first.len(), |k| {
         let (choice, mut posterior, prior) = first[k].clone();
-        if closer[k] && choice.memory.has_shape() {
+        if closer[k] && choice.has_shape() {
             let (low, high) = posterior.ends();
-            let ranges = [vec![(low, high)], choice.memory.shape_ranges()].concat();
-            let start = DVector::from_vec([vec![posterior.best().0], choice.memory.shape()].concat());
+            let ranges = [vec![(low, high)], choice.shape_ranges()].concat();
+            let start = DVector::from_vec([vec![posterior.best().0], choice.shape()].concat());
             let peak = Peak::from(start, &ranges, &|points| {
                 remainder.gains(points.len(), |k| {
                     let (choice, u) = at_point(choice, &points[k]);

@@ -1,12 +1,26 @@
-//! Numbers of a memory besides its width: of its shape.
+//! Numbers of a law besides the first that is not linear: of the shape of its loop, or the exponent
+//! beyond a threshold.
 
 use super::bouc_wen::LoopShape;
+use super::choice::Choice;
+use super::form::Form;
 use super::memory::Memory;
 use super::stops::Stops;
 
 /// Shapes of a first look at a loop.
 const SHARPNESSES: [f64; 3] = [1.0, 2.0, 5.0];
 const BALANCES: [f64; 2] = [0.55, 0.9];
+
+/// Exponents beyond a threshold, and those of a first look: from a root to a fourth power.
+const BEYOND: (f64, f64) = (0.5, 4.0);
+const FIRST_BEYOND: [f64; 3] = [0.67, 1.5, 2.5];
+/// Widths of a rounded threshold, shares of X: a corner is within the scatter of readings, and a
+/// wide one is a straight line.
+const ROUGH: (f64, f64) = (0.02, 0.3);
+const FIRST_ROUGH: [f64; 2] = [0.05, 0.14];
+
+/// What the prior of either is beside that of a corner.
+const NO_CORNER: f64 = 0.25;
 
 /// A number of a shape, for people.
 pub(super) struct OfShape {
@@ -19,18 +33,102 @@ pub(super) struct OfShape {
     pub is_width: bool,
 }
 
-impl Memory {
-    /// True for one with a shape.
+impl Choice {
+    /// True where its number that is not linear is not the only one.
     pub fn has_shape(self) -> bool {
+        !self.shape().is_empty()
+    }
+
+    /// The others, each where its prior is even.
+    pub fn shape(self) -> Vec<f64> {
+        [self.memory.shape(), self.form.shape()].concat()
+    }
+
+    /// The same law with others.
+    pub fn shaped(self, numbers: &[f64]) -> Choice {
+        Choice { form: self.form.shaped(numbers), memory: self.memory.shaped(numbers), ..self }
+    }
+
+    /// What its prior is beside that of another law of its place.
+    pub fn share(self) -> f64 {
+        self.form.share() * self.memory.share()
+    }
+
+    /// From where to where they may be.
+    pub fn shape_ranges(self) -> Vec<(f64, f64)> {
+        [self.memory.shape_ranges(), self.form.shape_ranges()].concat()
+    }
+
+    /// Laws of a first look.
+    pub fn first_shapes(self) -> Vec<Choice> {
+        let of_form = self.form.first_shapes().into_iter().map(|form| Choice { form, ..self });
+        let of_memory = self.memory.first_shapes().into_iter().map(|memory| Choice { memory, ..self });
+        of_form.chain(of_memory).collect()
+    }
+
+    /// For people; `width` is that of a memory, `largest` X, both in the unit of the variable.
+    pub fn of_shape(self, (width, largest): (f64, f64)) -> Vec<OfShape> {
+        let mut all = self.memory.of_shape(width);
+        match self.form {
+            Form::PowerBeyond(p) => all.push(OfShape::plain("p", "exponent", p, None)),
+            Form::Rough(v) => {
+                all.push(OfShape { is_width: true, ..OfShape::plain("v", "width", v * largest, None) })
+            }
+            _ => {}
+        }
+        all
+    }
+}
+
+impl Form {
+    /// A corner is what most things have that touch; how else they begin to is known of few.
+    fn share(self) -> f64 {
+        if self.shape().is_empty() { 1.0 } else { NO_CORNER }
+    }
+
+    /// See [`Choice::shape`].
+    pub(super) fn shape(self) -> Vec<f64> {
         match self {
-            Memory::BoucWen(_) | Memory::Stops(_) => true,
-            Memory::None | Memory::Side | Memory::Stop | Memory::Play | Memory::Lag | Memory::Lagged => false,
+            Form::PowerBeyond(number) | Form::Rough(number) => vec![number.ln()],
+            _ => Vec::new(),
         }
     }
 
+    fn shaped(self, numbers: &[f64]) -> Form {
+        match (self, numbers) {
+            (Form::PowerBeyond(_), &[p]) => Form::PowerBeyond(p.exp()),
+            (Form::Rough(_), &[v]) => Form::Rough(v.exp()),
+            _ => self,
+        }
+    }
+
+    fn shape_ranges(self) -> Vec<(f64, f64)> {
+        match self {
+            Form::PowerBeyond(_) => vec![(BEYOND.0.ln(), BEYOND.1.ln())],
+            Form::Rough(_) => vec![(ROUGH.0.ln(), ROUGH.1.ln())],
+            _ => Vec::new(),
+        }
+    }
+
+    fn first_shapes(self) -> Vec<Form> {
+        match self {
+            Form::PowerBeyond(_) => FIRST_BEYOND.map(Form::PowerBeyond).to_vec(),
+            Form::Rough(_) => FIRST_ROUGH.map(Form::Rough).to_vec(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl OfShape {
+    fn plain(symbol: &str, name: &str, value: f64, range: Option<(f64, f64)>) -> OfShape {
+        OfShape { symbol: symbol.into(), name: name.into(), value, range, is_width: false }
+    }
+}
+
+impl Memory {
     /// What its prior is beside that of another one: that one part more slips at a load of its own
     /// is half as likely each time.
-    pub(super) fn share(self) -> f64 {
+    fn share(self) -> f64 {
         match self {
             Memory::Stops(stops) => 0.5f64.powi(stops.count() as i32 - 1),
             _ => 1.0,
@@ -38,7 +136,7 @@ impl Memory {
     }
 
     /// Its numbers, each where its prior is even.
-    pub(super) fn shape(self) -> Vec<f64> {
+    fn shape(self) -> Vec<f64> {
         match self {
             Memory::BoucWen(LoopShape { sharpness, balance }) => vec![sharpness.ln(), balance],
             Memory::Stops(stops) => stops.numbers(),
@@ -47,7 +145,7 @@ impl Memory {
     }
 
     /// The same with other numbers.
-    pub(super) fn shaped(self, numbers: &[f64]) -> Memory {
+    fn shaped(self, numbers: &[f64]) -> Memory {
         match (self, numbers) {
             (Memory::BoucWen(_), &[sharp, balance]) => {
                 Memory::BoucWen(LoopShape { sharpness: sharp.exp(), balance })
@@ -58,7 +156,7 @@ impl Memory {
     }
 
     /// From where to where they may be.
-    pub(super) fn shape_ranges(self) -> Vec<(f64, f64)> {
+    fn shape_ranges(self) -> Vec<(f64, f64)> {
         match self {
             Memory::BoucWen(_) => {
                 let (low, high) = LoopShape::SHARPNESS;
@@ -70,7 +168,7 @@ impl Memory {
     }
 
     /// Those of a first look.
-    pub(super) fn first_shapes(self) -> Vec<Memory> {
+    fn first_shapes(self) -> Vec<Memory> {
         let of_sharpness = |sharpness: f64| BALANCES.map(|balance| LoopShape { sharpness, balance });
         match self {
             Memory::BoucWen(_) => {
@@ -82,14 +180,8 @@ impl Memory {
     }
 
     /// For people; `width` is its own number.
-    pub(super) fn of_shape(self, width: f64) -> Vec<OfShape> {
-        let plain = |symbol: &str, name: &str, value: f64, range: Option<(f64, f64)>| OfShape {
-            symbol: symbol.into(),
-            name: name.into(),
-            value,
-            range,
-            is_width: false,
-        };
+    fn of_shape(self, width: f64) -> Vec<OfShape> {
+        let plain = OfShape::plain;
         match self {
             Memory::BoucWen(shape) => {
                 vec![

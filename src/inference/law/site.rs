@@ -118,7 +118,7 @@ impl Site {
 
     /// What the prior of a form is there beside that of one that is not rare.
     pub fn share(&self, form: Form) -> f64 {
-        if self.rare.contains(&form) { RARE } else { 1.0 }
+        if self.rare.iter().any(|own| own.is(form)) { RARE } else { 1.0 }
     }
 
     /// True where the law is of what gives way.

@@ -73,6 +73,57 @@ fn a_threshold_is_found_where_it_is() {
     }
 }
 
+/// A number of a shape.
+fn of_shape(law: &Law) -> &Constant {
+    let [number] = &law.of_shape[..] else { panic!("{:?}", law.of_shape) };
+    number
+}
+
+/// Before, what is nearest to it among powers and waves.
+#[test]
+fn a_contact_that_begins_at_a_load_has_its_corner_and_exponent() {
+    let law = law_of(11, |f| 60.0 * ((f - 3.6).max(0.0) / 8.4).powf(1.5));
+    assert!(law.form.is(Form::CONTACT), "{:?} {:?}", law.form, law.rivals);
+    let ((_, corner), exponent) = (law.constant.clone().unwrap(), of_shape(&law));
+    assert!(corner.low < 3.6 && 3.6 < corner.high && corner.high - corner.low < 2.0, "{corner:?}");
+    assert!(exponent.low < 1.5 && 1.5 < exponent.high && exponent.high < 2.2, "{exponent:?}");
+    assert!((law.at(0, 18.0) / (60.0 * (14.4f64 / 8.4).powf(1.5)) - 1.0).abs() < 0.15, "{law:?}");
+}
+
+#[test]
+fn a_threshold_that_bends_little_by_little_has_its_width() {
+    let soft = |x: f64| x.exp().ln_1p();
+    let law = law_of(12, |f| 12.0 * 0.8 * soft((f - 6.4) / 0.8));
+    assert!(law.form.is(Form::ROUGH), "{:?} {:?}", law.form, law.rivals);
+    let ((_, corner), width) = (law.constant.clone().unwrap(), of_shape(&law));
+    assert!(corner.low < 6.4 && 6.4 < corner.high && corner.high - corner.low < 1.0, "{corner:?}");
+    assert!(width.unit == "N" && width.low < 0.8 && 0.8 < width.high && width.high < 1.6, "{width:?}");
+}
+
+/// What touches mostly has a corner.
+#[test]
+fn what_has_no_corner_is_rarer_than_what_has() {
+    let share = |form: Form| choice::Choice { site: 0, form, memory: Memory::None }.share();
+    assert!(share(Form::CONTACT) < 0.5 && share(Form::ROUGH) < 0.5);
+    assert_eq!(share(Form::Threshold), 1.0);
+}
+
+#[test]
+fn what_is_rare_is_so_with_any_exponent() {
+    let [site] = site(&DVector::zeros(0)).try_into().unwrap();
+    let site = Site { rare: &[Form::CONTACT, Form::ROUGH], ..site };
+    let share = |form: Form| site.share(form);
+    assert!(share(Form::PowerBeyond(2.7)) < 1.0 && share(Form::Rough(0.07)) < 1.0);
+    assert_eq!(share(Form::Threshold), 1.0);
+}
+
+/// Less than a period comes back nowhere, and any curve is some of it.
+#[test]
+fn what_bends_once_is_no_wave() {
+    let grid = Form::Harmonic.grid((0.0, 1.0), 12);
+    assert!(grid.iter().all(|u| Form::Harmonic.at_coordinate(*u) > 1.0 - 1e-9), "{grid:?}");
+}
+
 #[test]
 fn a_wave_has_its_period() {
     let law = law_of(2, |f| 8.0 * (std::f64::consts::TAU * f / 3.7).sin());

@@ -36,14 +36,16 @@ const OF_A_STOP: &[Form] = &[
     Form::Saturation,
     Form::Rounded,
     Form::Threshold,
+    Form::CONTACT,
+    Form::ROUGH,
     Form::Step,
     Form::Approach,
     Form::Logarithm,
 ];
 /// With two signs, of which each may be another case.
 const OF_A_SIDE: &[Form] = Form::FROM_ANYWHERE;
-/// Of a distance: what pulls from there, or is touched there.
-const OF_A_DISTANCE: &[Form] = &[Form::Pull, Form::Threshold];
+/// Of a distance: what pulls from there, is touched there, or is stretched from zero on.
+const OF_A_DISTANCE: &[Form] = &[Form::Pull, Form::Threshold, Form::CONTACT, Form::ROUGH, Form::Power];
 /// From the first reading on: time, order. What swings had begun before.
 const OF_TIME: &[Form] = &[
     Form::Threshold,

@@ -81,6 +81,13 @@ pub fn remark(law: &Law) -> Option<String> {
         (Form::Threshold, _, "u") => {
             "A slope from one deflection on is what something does that is touched there."
         }
+        (Form::PowerBeyond(_), _, "F" | "M" | "u") => {
+            "A power from somewhere on is what curved bodies do that touch there (Hertz)."
+        }
+        (Form::Rough(_), _, "F" | "M" | "u") => {
+            "A slope that begins little by little is what rough surfaces do that meet (Greenwood and \
+             Williamson)."
+        }
         (Form::Saturation, _, "F" | "M") => {
             "Growth up to one load is what a part does that comes to a stop there."
         }

@@ -56,12 +56,12 @@ mod tests {
             };
             let power = |k: usize| match form {
                 Form::Polynomial(_) => k as i32 + 1,
-                Form::Threshold => 1,
+                Form::Threshold | Form::Rough(_) => 1,
                 Form::Pull | Form::PullBelow | Form::PullAbove => -2,
                 _ => 0,
             };
             let symbols: &[&str] = match form {
-                Form::Threshold | Form::Pull | Form::PullBelow | Form::PullAbove => &["k"],
+                Form::Threshold | Form::Rough(_) | Form::Pull | Form::PullBelow | Form::PullAbove => &["k"],
                 Form::Harmonic | Form::Settling => &["a", "b"],
                 Form::Oscillation => &["a", "b", "c"],
                 Form::PowerAfterGap => &["a", "g"],
@@ -90,7 +90,12 @@ mod tests {
                 rare: &[],
             };
             let si: Vec<f64> = amplitudes.iter().map(|a| a * 1e-6).collect();
-            let law = Law::of_numbers(site, form, (constants, shape), (si, s));
+            let mut law = Law::of_numbers(site, form, (constants, shape), (si, s));
+            law.of_shape = match form {
+                Form::PowerBeyond(p) => vec![named("p", p)],
+                Form::Rough(v) => vec![named("v", v * largest)],
+                _ => Vec::new(),
+            };
             let written = written(&law, "test").unwrap();
             for x in [-90.0, 10.0, 101.0, 240.0] {
                 let (own, expected) = (written.at(x, 1.0), law.at(0, x * 1e-6) / 1e-6);

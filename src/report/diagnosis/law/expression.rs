@@ -39,6 +39,8 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         Form::Pull => format!("k·(1/({corner} − {x})² − 1/{corner}²)"),
         Form::PullBelow | Form::PullAbove => format!("k/({x} − {corner})²"),
         Form::Threshold => format!("k·max({x} − {corner}, 0)"),
+        Form::PowerBeyond(_) => format!("a·(max({x} − {corner}, 0)/({scale} − {corner}))^p"),
+        Form::Rough(_) => format!("k·v·(ln(1 + exp(({x} − {corner})/v)) − ln(1 + exp(−{corner}/v)))"),
         Form::Step => format!("a·[{x} > {corner}]"),
         Form::Approach => format!("a·{sign}(1 − exp(−{size}/{corner}))"),
         Form::Decay => format!("a·{sign}exp(−{size}/{corner})"),
@@ -94,6 +96,10 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
             format!(r"\frac{{k}}{{\left({x} - {corner}\right)^2}}")
         }
         Form::Threshold => format!(r"k\,\max({x} - {corner}, 0)"),
+        Form::PowerBeyond(_) => {
+            format!(r"a\left(\frac{{\max({x} - {corner}, 0)}}{{{scale} - {corner}}}\right)^{{p}}")
+        }
+        Form::Rough(_) => format!(r"k\,v\,\ln\frac{{1 + e^{{({x} - {corner})/v}}}}{{1 + e^{{-{corner}/v}}}}"),
         Form::Step => format!(r"a\,[{x} > {corner}]"),
         Form::Approach => format!(r"a{sign}\left(1 - e^{{-{size}/{corner}}}\right)"),
         Form::Decay => format!(r"a{sign}\,e^{{-{size}/{corner}}}"),

@@ -229,8 +229,10 @@ fn is_as_others(
     own: &[usize],
     apart: f64,
 ) -> bool {
-    let from_others = own.iter().filter_map(|&i| {
-        let line = &lines[line_of[i]?];
+    // the load by which it differs from theirs, by all channels as each knows it
+    let (mut top, mut bottom) = (0.0, 0.0);
+    for &i in own {
+        let Some(line) = line_of[i].map(|k| &lines[k]) else { continue };
         let is_other = |other: &&usize| {
             let other = &data[**other];
             other.order != data[i].order
@@ -239,10 +241,17 @@ fn is_as_others(
                 && other.is_unloading() == data[i].is_unloading()
         };
         let others: Vec<f64> = line.data.iter().filter(is_other).map(|&other| data[other].measured).collect();
-        Some((data[i].measured - median(&others)?).abs() < 0.5 * line.fit.slope.abs() * apart)
-    });
-    let from_others: Vec<bool> = from_others.collect();
-    !from_others.is_empty() && from_others.iter().all(|is_as_others| *is_as_others)
+        let Some(others) = median(&others) else { continue };
+        let weight = scatter_of(line).powi(-2);
+        top += weight * line.fit.slope * (data[i].measured - others);
+        bottom += weight * line.fit.slope.powi(2);
+    }
+    bottom > 0.0 && (top / bottom).abs() < 0.5 * apart
+}
+
+/// What a reading of a line scatters by, m: no line is straighter than this share of its largest.
+fn scatter_of(line: &Line) -> f64 {
+    line.fit.scatter.max(1e-4 * line.fit.slope.abs() * line.largest_load)
 }
 
 fn most_slope(lines: &[Line], line_of: &[Option<usize>], own: &[usize]) -> f64 {
@@ -258,20 +267,19 @@ fn load_by_readings(
     let line = |&i: &usize| Some((&data[i], &lines[line_of[i]?]));
     let known: Vec<(&Datum, &Line)> =
         own.iter().filter_map(line).filter(|(_, line)| line.has_slope).collect();
-    let scatter = |line: &Line| line.fit.scatter.max(1e-4 * line.fit.slope.abs() * line.largest_load);
     let without_play = |datum: &Datum, line: &Line| {
         datum.measured - line.fit.zero - line.fit.play * f64::from(datum.direction.sign)
     };
     let (mut top, mut bottom) = (0.0, 0.0);
     for (datum, line) in &known {
-        let weight = scatter(line).powi(-2);
+        let weight = scatter_of(line).powi(-2);
         top += weight * line.fit.slope * without_play(datum, line);
         bottom += weight * line.fit.slope.powi(2);
     }
     let load = top / bottom;
     let off = |load: f64, (datum, line): &(&Datum, &Line)| {
         // the slope is known to its error only
-        let sigma = scatter(line).hypot(line.fit.error * load);
+        let sigma = scatter_of(line).hypot(line.fit.error * load);
         ((without_play(datum, line) - line.fit.slope * load) / sigma).abs()
     };
     let in_file = known.first().map(|(datum, _)| datum.signed_load())?;

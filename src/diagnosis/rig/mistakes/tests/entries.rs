@@ -38,6 +38,22 @@ fn what_most_runs_show_of_a_load_was_not_typed_wrongly() {
     assert_eq!([with(&[2]), with(&[1, 2])], [1, 0]);
 }
 
+/// Loads that the slide's friction keeps from the rod: both trials read nothing there.
+#[test]
+fn what_every_trial_reads_at_a_load_corrects_none() {
+    let loads = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
+    for noise in [0.3, 2.0] {
+        let mut random = Random::seeded(2, 0);
+        let mut text = "axis,load_n,trial,phase,dy_um,dz_um\n".to_owned();
+        for (trial, load) in (1..=2).flat_map(|trial| loads.map(|load| (trial, load))) {
+            let arrives = f64::max(load - 2.0, 0.0);
+            let [y, z] = [40.0, 1.2].map(|slope| slope * arrives + noise * random.normal());
+            text += &format!("y,{load},{trial},load,{y:.1},{z:.1}\n");
+        }
+        assert_eq!(found(&Readings::from_text("f", &text).unwrap(), None), [""; 0], "{noise}");
+    }
+}
+
 /// A display of ten micrometres, and a rod that moves by as much from load to load: what differs by
 /// one step corrects no load.
 #[test]

@@ -13,9 +13,12 @@ const RATIO_BEFORE: f64 = 1.0;
 /// What that belief counts, in degrees of freedom.
 const BELIEF: f64 = 10.0;
 /// Of fewer groups nobody knows which mean is far out; and how far that is, in robust standard
-/// deviations; and of how many at most, one in so many.
+/// deviations.
 const FEWEST_GROUPS: usize = 6;
 const FAR: f64 = 3.0;
+/// What moves the mean of its repeats, which makes others far out: so far from their median, one in
+/// so many at most.
+const FARTHER: f64 = 8.0;
 const ONE_IN: usize = 3;
 
 /// Where so large a share of the mean square is shared, zeros scatter three times as far as
@@ -78,28 +81,38 @@ impl Squares {
             *squares += deviation * deviation;
             *members += 1.0;
         }
+        // a step between two runs is no scatter of their zeros: a mean far out counts as far as
+        // usual
+        let limit = match groups.len() >= FEWEST_GROUPS {
+            true => {
+                let means: Vec<f64> =
+                    groups.values().map(|(total, _, members)| (total / members).abs()).collect();
+                FAR * 1.4826 * median(&means).unwrap_or_default()
+            }
+            false => f64::INFINITY,
+        };
         let mut far = 0.0;
         for (group, (total, squares, members)) in groups {
             let mean = total / members;
-            all.add(mean, squares - members * mean * mean, members);
+            all.add(mean, squares - members * mean * mean, members, limit);
             if mean.abs() > far {
                 (far, all.farthest) = (mean.abs(), Some(group));
             }
         }
-        // a step between two runs is no scatter of their zeros: a mean far out counts as far as
-        // usual
-        far_out.groups.values().for_each(|&(within, members)| all.add(far_out.limit, within, members));
+        let limit = far_out.limit;
+        far_out.groups.values().for_each(|&(within, members)| all.add(limit, within, members, limit));
         all
     }
 
-    /// A group of so many members with its mean and its squares about it.
-    fn add(&mut self, mean: f64, within: f64, members: f64) {
-        let squares = within + members * mean * mean;
+    /// A group of so many members with its mean and its squares about it; how far off the mean
+    /// counts.
+    fn add(&mut self, mean: f64, within: f64, members: f64, limit: f64) {
+        let clipped = mean.clamp(-limit, limit);
         self.count += members;
-        self.square += squares;
+        self.square += within + members * mean * mean;
         self.within += within;
         self.groups += 1.0;
-        self.product += (mean * members).powi(2) - squares;
+        self.product += (clipped * members).powi(2) - within - members * clipped * clipped;
         self.pairs += members * (members - 1.0);
     }
 
@@ -160,7 +173,7 @@ impl FarOut {
         }
         let mean = |own: &[f64]| own.iter().sum::<f64>() / own.len() as f64;
         let means: Vec<f64> = groups.values().map(|own| mean(own).abs()).collect();
-        let limit = FAR * 1.4826 * median(&means).unwrap_or_default();
+        let limit = FARTHER * 1.4826 * median(&means).unwrap_or_default();
         let all = groups.len();
         let far = groups.into_iter().filter(|(_, own)| mean(own).abs() > limit);
         let with_squares = far.map(|(group, own)| {

@@ -240,8 +240,9 @@ fn add_stiffness(mistakes: &mut [Finding], recorded: &RigModel, evidence: &Evide
     if !mistakes::is_one_factor(recorded, evidence) {
         return;
     }
-    // of a factor that is no unit's a number of the rod's file may be the cause as well
-    let may_be = |mistake: &Finding| is_left || mistakes::is_unknown_unit(mistake);
+    // of a factor that is no unit's, or a rod's as well, numbers of its file may be the cause
+    let may_be =
+        |mistake: &Finding| is_left || mistakes::is_unknown_unit(mistake) || mistakes::is_like_a_rod(mistake);
     let units = mistakes.iter_mut().filter(|mistake| *mistake.effect == UNIT_MISTAKE);
     for mistake in units.filter(|mistake| may_be(mistake)) {
         let rod = Location::Part(Part::Rod);

@@ -40,7 +40,7 @@ mod some_rows;
 mod tests;
 mod trials;
 
-pub(super) use self::labels::is_unknown_unit;
+pub(super) use self::labels::{is_like_a_rod, is_unknown_unit};
 pub(super) use self::lookalikes::{is_one_factor, lookalikes};
 pub(super) use self::mended::Mended;
 pub(super) use self::rods::OtherRod;

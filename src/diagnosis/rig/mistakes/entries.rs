@@ -100,16 +100,13 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
                 && is_near(by_readings.load, datum.signed_load())
         })
     };
-    let mut found = Vec::new();
+    let (mut found, mut as_others) = (Vec::new(), Vec::new());
     for (own, shown) in &shown {
         let datum = &data[own[0]];
         let row = datum.row;
         let apart = (shown.load - datum.signed_load()).abs();
         let is_wrong = apart > FAR * usual && apart > SCATTERS * shown.error;
         if !is_wrong || shown.off > AGREE {
-            continue;
-        }
-        if is_as_others(data, lines, &line_of, own, apart) {
             continue;
         }
         let along = f64::from(datum.direction.sign) * shown.load;
@@ -171,6 +168,7 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
             rows: own.iter().map(|&i| data[i].row - 1).collect(),
             load: meant,
         });
+        as_others.push(is_as_others(data, lines, &line_of, own, apart));
     }
     // what most rows of a load show was not typed wrongly
     let alike = |a: &Datum, b: &Datum| a.direction == b.direction && a.load == b.load;
@@ -180,7 +178,8 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
         let wrong = found.iter().filter(|other| alike(first(other), first(entry))).count();
         wrong > 1 && 2 * wrong > rows
     };
-    let is_single: Vec<bool> = found.iter().map(|entry| !repeats(entry)).collect();
+    let is_single: Vec<bool> =
+        found.iter().zip(as_others).map(|(entry, is_as_others)| !is_as_others && !repeats(entry)).collect();
     let single: Vec<Entry> =
         found.into_iter().zip(is_single).filter_map(|(entry, is_its)| is_its.then_some(entry)).collect();
     // nor what most rows of a run do

@@ -11,8 +11,8 @@ use self::signs::signs;
 use self::swaps::swaps;
 pub(super) use self::units::{BESIDE, HARDLY_BESIDE, of_loads};
 use self::units::{decimals, load_units, reading_units};
-pub use self::unknown_unit::is_unknown_unit;
 pub(super) use self::unknown_unit::{BEYOND_A_ROD, unknown_units};
+pub use self::unknown_unit::{is_like_a_rod, is_unknown_unit};
 use super::possible::PossibleMistake;
 
 /// Every mistake that lines with these labels could show.

@@ -78,6 +78,12 @@ pub fn is_unknown_unit(finding: &Finding) -> bool {
     is_unknown(finding.effect, &finding.estimates)
 }
 
+/// True for a unit whose factor is one that a rod of other walls, or of another material, has.
+pub fn is_like_a_rod(finding: &Finding) -> bool {
+    let is_near = |factor: &Estimate| factor.value.ln().abs() < BEYOND_A_ROD.ln();
+    *finding.effect == UNIT_MISTAKE && finding.estimates.iter().any(is_near)
+}
+
 fn is_unknown(effect: &Effect, estimates: &[Estimate]) -> bool {
     *effect == UNIT_MISTAKE && estimates.iter().any(|factor| factor.low < factor.high)
 }

@@ -77,21 +77,20 @@ fn a_unit_that_nobody_knows_is_looked_up() {
     }
 }
 
-/// Pounds for kilograms, and pounds of force where sensors along the loads see one factor only, are
-/// what a stiffer rod would read: named as a rival, and looked up before anything is measured.
+/// Pounds for kilograms are what a rod 2.2 times as stiff would read: named before it, with it as
+/// their rival.
 #[test]
-fn a_unit_that_looks_like_physics_is_its_rival() {
+fn a_unit_that_looks_like_physics_has_it_as_its_rival() {
     let file = rod(ROD_5);
     let clean = recorded(&file, Bench::Full, 5);
     let mut in_pounds = with_loads(&clean, 1.0 / 0.453_592_37);
     in_pounds.load_column = crate::rig::readings::LoadColumn::Kilograms;
     let found = crate::diagnosis::rig::diagnose(&in_pounds, Some(&file)).unwrap();
     let first = &found.diagnosis.findings[0];
-    assert_eq!(first.effect.name, "stiffness_scale");
-    let location = Location::key("load_kg in pounds (lb)");
-    assert!(first.others().iter().any(|(_, place)| *place == location), "{:?}", first.others());
-    let next = first.next.as_ref().unwrap();
-    assert!(next.plan.is_none() && next.separates_from.iter().any(|(_, place)| *place == location));
+    assert_eq!(first.effect.name, "unit_mistake");
+    assert!(first.description.observed.starts_with("The loads are pounds (lb), not kilograms"));
+    let others: Vec<&str> = first.others().iter().map(|(effect, _)| effect.name).collect();
+    assert_eq!((others, found.diagnosis.findings.len()), (vec!["stiffness_scale"], 1));
     // a rod that is as much stiffer as no unit is
     let stiffer = all_scaled(&clean, 0.7);
     let found = crate::diagnosis::rig::diagnose(&stiffer, Some(&file)).unwrap();

@@ -219,6 +219,25 @@ mod tests {
         }
     }
 
+    /// Two sensors in three runs each: one zero of the six is off, and moves the mean of its
+    /// repeats.
+    #[test]
+    fn one_zero_of_three_that_is_far_out_is_no_scatter_of_zeros() {
+        let ratio = |off: f64| {
+            let mut random = Random::seeded(7, 0);
+            let zeros: Vec<f64> =
+                (0..6).map(|run| 0.5 * random.normal() + if run == 5 { off } else { 0.0 }).collect();
+            let residual = DVector::from_fn(102, |i, _| zeros[i / 17] + random.normal());
+            let evidence = Evidence {
+                replicate_group: (0..102).map(|i| i / 51 * 17 + i % 17).collect(),
+                shared: (0..102).map(|i| i / 17).collect(),
+                ..Evidence::new(residual)
+            };
+            shared_ratio(&evidence, &evidence.residual, 0.0).sqrt()
+        };
+        assert!(ratio(0.0) < 1.0 && ratio(17.0) < 3.0, "{} {}", ratio(0.0), ratio(17.0));
+    }
+
     #[test]
     fn zeros_far_apart_leave_the_scatter_of_readings_what_it_is() {
         for times in [0.0, 1.0, 3.0, 10.0, 150.0] {

@@ -109,7 +109,7 @@ pub(super) fn found(data: &[Datum]) -> Vec<Part> {
     found
 }
 
-/// Load, N, and difference, m, of the readings of two trials through the same loads, by their lines.
+/// Load, N, and difference, m, of the readings of two trials through the same loads, line by line.
 fn differences(data: &[Datum], first: &[usize], second: &[usize]) -> BTreeMap<LineKey, Vec<(f64, f64)>> {
     let mut of_line: BTreeMap<LineKey, Vec<(f64, f64)>> = BTreeMap::new();
     for (&a, &b) in first.iter().zip(second) {
@@ -120,8 +120,9 @@ fn differences(data: &[Datum], first: &[usize], second: &[usize]) -> BTreeMap<Li
 }
 
 /// Odds against as many readings being the same to the last digit as a trial has, by the most that
-/// two trials of `pairs` share in each line, beside a zero and a slope: −Σ n·ln((most + ½)/(n + 1)),
-/// R. E. Krichevsky and V. K. Trofimov, *IEEE Trans. Inf. Theory* 27 (1981) 199–207.
+/// two trials of `pairs` share in each line, beside a zero and a slope:
+/// −Σ n·ln((most + ½)/(n + 1)), R. E. Krichevsky and V. K. Trofimov, *IEEE Trans. Inf. Theory* 27
+/// (1981) 199–207.
 fn of_shares<'a>(data: &[Datum], pairs: impl Iterator<Item = (&'a [usize], &'a [usize])>) -> f64 {
     let mut most: BTreeMap<_, [usize; 2]> = BTreeMap::new();
     for (first, second) in pairs {

@@ -235,7 +235,7 @@ mod tests {
             };
             shared_ratio(&evidence, &evidence.residual, 0.0).sqrt()
         };
-        assert!(ratio(0.0) < 1.0 && ratio(17.0) < 3.0, "{} {}", ratio(0.0), ratio(17.0));
+        assert!(ratio(0.0) < 1.0 && ratio(17.0) < 4.0, "{} {}", ratio(0.0), ratio(17.0));
     }
 
     #[test]

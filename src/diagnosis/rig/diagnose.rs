@@ -14,6 +14,7 @@ use super::mistakes::Mended;
 use super::model::wanted::Wanted;
 use super::model::{AsRecorded, RigDiagnosis, RigModel};
 use super::own_effect::OwnEffect;
+use super::recording::columns::load_column;
 use super::write_back::as_found;
 use crate::diagnosis::Diagnosed;
 use crate::error::{Error, Place, Result};
@@ -241,8 +242,9 @@ fn add_stiffness(mistakes: &mut [Finding], recorded: &RigModel, evidence: &Evide
         return;
     }
     // of a factor that is no unit's, or a rod's as well, numbers of its file may be the cause
-    let may_be =
-        |mistake: &Finding| is_left || mistakes::is_unknown_unit(mistake) || mistakes::is_like_a_rod(mistake);
+    let loads = Location::key(load_column(recorded.readings.load_column));
+    let is_like_a_rod = |mistake: &Finding| mistake.location == loads && mistakes::is_like_a_rod(mistake);
+    let may_be = |mistake: &Finding| is_left || mistakes::is_unknown_unit(mistake) || is_like_a_rod(mistake);
     let units = mistakes.iter_mut().filter(|mistake| *mistake.effect == UNIT_MISTAKE);
     for mistake in units.filter(|mistake| may_be(mistake)) {
         let rod = Location::Part(Part::Rod);

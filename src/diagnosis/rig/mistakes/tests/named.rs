@@ -91,6 +91,13 @@ fn a_unit_that_looks_like_physics_has_it_as_its_rival() {
     assert!(first.description.observed.starts_with("The loads are pounds (lb), not kilograms"));
     let others: Vec<&str> = first.others().iter().map(|(effect, _)| effect.name).collect();
     assert_eq!((others, found.diagnosis.findings.len()), (vec!["stiffness_scale"], 1));
+    // radii of one pipe are no stiffer rod
+    let mut radii = file.clone();
+    let round = *radii.pipe2.section.as_round().unwrap();
+    radii.pipe2.section = Round::tube(round.outer_diameter / 2.0, round.inner_diameter / 2.0).into();
+    let found = crate::diagnosis::rig::diagnose(&clean, Some(&radii)).unwrap();
+    let first = &found.diagnosis.findings[0];
+    assert_eq!((first.effect.name, first.others().len()), ("unit_mistake", 0), "{:?}", first.others());
     // a rod that is as much stiffer as no unit is
     let stiffer = all_scaled(&clean, 0.7);
     let found = crate::diagnosis::rig::diagnose(&stiffer, Some(&file)).unwrap();

@@ -1,5 +1,5 @@
 //! Forms of a law: functions of a scaled variable, with one number at most that is not linear, or
-//! two of which one is an exponent.
+//! two: where it begins, and its exponent or width there.
 
 use std::f64::consts::TAU;
 
@@ -210,7 +210,7 @@ impl Form {
         }
     }
 
-    /// True for the same, whatever its exponent.
+    /// True for the same, whatever its exponent or width.
     pub fn is(self, other: Form) -> bool {
         match (self, other) {
             (Form::PowerBeyond(_), Form::PowerBeyond(_)) | (Form::Rough(_), Form::Rough(_)) => true,

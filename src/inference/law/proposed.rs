@@ -55,7 +55,7 @@ pub struct Law {
     pub amplitudes: Vec<Constant>,
     /// Its number that is not linear.
     pub constant: Option<(FormConstant, Constant)>,
-    /// The others that are not linear: the shape of its loop, an exponent beyond a threshold.
+    /// The others that are not linear: the shape of its loop, the exponent or width of a contact.
     pub of_shape: Vec<Constant>,
     /// Correlation coefficients of all constants, in their order.
     pub correlation: DMatrix<f64>,
@@ -252,6 +252,12 @@ impl Law {
             more: None,
             second: None,
         }
+    }
+
+    /// Whether it may be used half again beyond its data: what is open there is within the noise,
+    /// and nothing is left beside it, which would go on too.
+    pub fn holds_beyond(&self) -> Option<bool> {
+        self.further.map(|(_, apart)| apart <= self.noise && self.more.is_none())
     }
 
     /// It, and the one that is proposed beside it.

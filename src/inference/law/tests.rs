@@ -100,6 +100,17 @@ fn a_threshold_that_bends_little_by_little_has_its_width() {
     assert!(width.unit == "N" && width.low < 0.8 && 0.8 < width.high && width.high < 1.6, "{width:?}");
 }
 
+/// What something else adds beyond the data no law says.
+#[test]
+fn beside_something_else_no_law_holds_beyond_its_data() {
+    let law = law_of(1, |f| 6.0 * (f - 7.3).max(0.0));
+    let more = (law.site.location.clone(), law.site.variable.clone());
+    let law = Law { further: Some((18.0, 0.5 * law.noise)), more: None, ..law };
+    assert_eq!(law.holds_beyond(), Some(true));
+    assert_eq!(Law { more: Some(more), ..law.clone() }.holds_beyond(), Some(false));
+    assert_eq!(Law { further: None, ..law }.holds_beyond(), None);
+}
+
 /// What touches mostly has a corner.
 #[test]
 fn what_has_no_corner_is_rarer_than_what_has() {

@@ -105,7 +105,7 @@ fn of_law(law: &Law, number: usize, subject: &LawSubject, note: &LawNote) -> Val
         "beyond": law.further.map(|(at, apart)| json!({
             "at": at / variable.si,
             "apart_um": um(apart),
-            "may_be_used": apart <= law.noise,
+            "may_be_used": law.holds_beyond(),
         })),
         "more_left": law.more.as_ref().map(|(location, variable)| {
             json!({ "location": location.to_string(), "place": place(location), "variable": variable.name, "unit": variable.unit })
@@ -301,15 +301,16 @@ fn range(law: &Law, subject: &LawSubject, note: &LawNote) -> String {
         ),
         WrittenTo::Nowhere => String::new(),
     };
-    let beyond =
-        law.further.filter(|(_, apart)| *apart > law.noise).map_or_else(String::new, |(at, apart)| {
-            let at = with_unit(show(at, 2), variable.unit);
-            format!(
-                ": at {at} these {} leave up to {} µm open, so do not use it there",
-                subject.noun,
-                um(apart)
-            )
-        });
+    let beyond = match law.further {
+        Some((at, apart)) if apart > law.noise => {
+            let (noun, at) = (subject.noun, with_unit(show(at, 2), variable.unit));
+            format!(": at {at} these {noun} leave up to {} µm open, so do not use it there", um(apart))
+        }
+        Some(_) if law.more.is_some() => {
+            ": something else is left beside it, so do not use it there".to_owned()
+        }
+        _ => String::new(),
+    };
     format!(
         "It is a proposal from {} between {} and {}; beyond that it is an extrapolation{beyond}. It changes no finding{written}.",
         subject.noun,

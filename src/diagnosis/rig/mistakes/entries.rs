@@ -6,12 +6,14 @@
 //! F = Σ w·s·(y − a) / Σ w·s²,   w = 1/σ²
 //! ```
 //!
-//! s, a and σ slope, zero and scatter of the line of each channel. Where that is far from the load
-//! in the file, two channels or more contradict the file and all agree with it, the load is wrong
-//! and not a reading; a single channel is a suspect reading like any other, but where the load in
-//! the file is in no other row and the one that it shows is, or where two rows of a run show each
-//! other's loads. Which number was meant: another load of the recording, its digits exchanged, or
-//! its decimal point elsewhere.
+//! s, a and σ slope, zero and scatter of the line of each channel, without loads far beyond all
+//! others. Where that is far from the load in the file, two channels or more contradict the file
+//! and all agree with it, the load is wrong and not a reading; a single channel is a suspect
+//! reading like any other, but where the load in the file is in no other row and the one that it
+//! shows is, or where two rows of a run show each other's loads. Which number was meant: another
+//! load of the recording, its decimal point elsewhere, or two neighbouring digits exchanged; one
+//! that is both, another load and of these digits, before the nearest. What other rows of the same
+//! load show as well, or most rows of a run, was not typed wrongly.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -45,9 +47,8 @@ const BEYOND: f64 = 1.3;
 const MOST: f64 = 150.0;
 /// Lines of fewer readings say nothing of one of them.
 const LEAST: usize = 6;
-/// At most this share of the rows, and one in so many of a run.
+/// At most this share of the rows.
 const FEW: f64 = 0.1;
-const FEW_OF_A_RUN: usize = 3;
 
 /// A load that was typed wrongly.
 pub(super) struct Entry {
@@ -80,10 +81,7 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
     data.iter().enumerate().for_each(|(i, datum)| instants.entry(datum.order).or_default().push(i));
     let levels: Vec<f64> = data.iter().map(|datum| datum.load).collect();
     let usual = median(&levels).unwrap_or(0.0);
-    let in_file = match unit {
-        LoadColumn::Newtons => 1.0,
-        LoadColumn::Kilograms => STANDARD_GRAVITY,
-    };
+    let in_file = in_file(unit);
     let by_readings = |own: &[usize]| load_by_readings(data, lines, &line_of, own);
     let shown: Vec<(&[usize], LoadByReadings)> =
         instants.values().filter_map(|own| Some((&own[..], by_readings(own)?))).collect();
@@ -103,7 +101,6 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
     let (mut found, mut as_others) = (Vec::new(), Vec::new());
     for (own, shown) in &shown {
         let datum = &data[own[0]];
-        let row = datum.row;
         let apart = (shown.load - datum.signed_load()).abs();
         let is_wrong = apart > FAR * usual && apart > SCATTERS * shown.error;
         if !is_wrong || shown.off > AGREE {
@@ -130,65 +127,90 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
         if shown.against[0] < if is_known { AGREE } else { SCATTERS } {
             continue;
         }
-        let name = load_column(unit);
-        let unit_name = if unit == LoadColumn::Newtons { "N" } else { "kg" };
-        let written = number(datum.load / in_file);
-        let is = match meant {
-            Some(meant) => number(meant / in_file),
-            None => format!(
-                "{} ± {}",
-                significant(along / in_file, 3),
-                significant(2.0 * shown.error / in_file, 1)
-            ),
-        };
-        let location = Key::new(name).rows(format!("row {row}"));
-        let readings: Vec<Axis> = own.iter().map(|&i| data[i].channel).collect();
-        let line = datum.line;
-        let verb = if readings.len() == 1 { "is" } else { "are" };
-        found.push(Entry {
-            part: Part {
-                effect: &TYPING_MISTAKE,
-                observed: format!(
-                    "The load in row {row} (line {line}) is {written} {unit_name}, but {} {verb} of {is} {unit_name}: write that instead, or leave the row out",
-                    columns(&readings)
-                ),
-                looks_like: format!("{location} looks mistyped"),
-                location,
-                estimates: vec![match meant {
-                    Some(meant) => exact("n", meant),
-                    None => {
-                        let half = 2.0 * shown.error;
-                        Estimate::as_written("n", along, along - half, along + half)
-                    }
-                }],
-                explains: apart * most_slope(lines, &line_of, own),
-                data: own.to_vec(),
-                rivals: Vec::new(),
-            },
-            rows: own.iter().map(|&i| data[i].row - 1).collect(),
-            load: meant,
-        });
+        found.push(entry(data, own, unit, shown, meant, apart * most_slope(lines, &line_of, own)));
         as_others.push(is_as_others(data, lines, &line_of, own, apart));
     }
-    // what most rows of a load show was not typed wrongly
-    let alike = |a: &Datum, b: &Datum| a.direction == b.direction && a.load == b.load;
+    few(data, &instants, found, &as_others)
+}
+
+/// What is said of a load, and done: `meant` (N) is written instead, or the row is left out.
+fn entry(
+    data: &[Datum],
+    own: &[usize],
+    unit: LoadColumn,
+    shown: &LoadByReadings,
+    meant: Option<f64>,
+    explains: f64,
+) -> Entry {
+    let datum = &data[own[0]];
+    let (row, line) = (datum.row, datum.line);
+    let in_file = in_file(unit);
+    let along = f64::from(datum.direction.sign) * shown.load;
+    let half = 2.0 * shown.error;
+    let unit_name = if unit == LoadColumn::Newtons { "N" } else { "kg" };
+    let written = number(datum.load / in_file);
+    let is = match meant {
+        Some(meant) => number(meant / in_file),
+        None => format!("{} ± {}", significant(along / in_file, 3), significant(half / in_file, 1)),
+    };
+    let location = Key::new(load_column(unit)).rows(format!("row {row}"));
+    let readings: Vec<Axis> = own.iter().map(|&i| data[i].channel).collect();
+    let verb = if readings.len() == 1 { "is" } else { "are" };
+    Entry {
+        part: Part {
+            effect: &TYPING_MISTAKE,
+            observed: format!(
+                "The load in row {row} (line {line}) is {written} {unit_name}, but {} {verb} of {is} {unit_name}: write that instead, or leave the row out",
+                columns(&readings)
+            ),
+            looks_like: format!("{location} looks mistyped"),
+            location,
+            estimates: vec![match meant {
+                Some(meant) => exact("n", meant),
+                None => Estimate::as_written("n", along, along - half, along + half),
+            }],
+            explains,
+            data: own.to_vec(),
+            rivals: Vec::new(),
+        },
+        rows: own.iter().map(|&i| data[i].row - 1).collect(),
+        load: meant,
+    }
+}
+
+/// Those of `found` that are slips of single rows: what most rows of a load show, or `as_others` of
+/// it do, was not typed wrongly, nor what most rows of a run do; and they are few.
+fn few(
+    data: &[Datum],
+    instants: &BTreeMap<usize, Vec<usize>>,
+    found: Vec<Entry>,
+    as_others: &[bool],
+) -> Vec<Entry> {
     let first = |entry: &Entry| &data[entry.part.data[0]];
-    let repeats = |entry: &Entry| {
+    let are_most = |among: &[Entry], entry: &Entry, alike: &dyn Fn(&Datum, &Datum) -> bool| {
         let rows = instants.values().filter(|own| alike(&data[own[0]], first(entry))).count();
-        let wrong = found.iter().filter(|other| alike(first(other), first(entry))).count();
+        let wrong = among.iter().filter(|other| alike(first(other), first(entry))).count();
         wrong > 1 && 2 * wrong > rows
     };
-    let is_single: Vec<bool> =
-        found.iter().zip(as_others).map(|(entry, is_as_others)| !is_as_others && !repeats(entry)).collect();
+    let of_load = |a: &Datum, b: &Datum| a.direction == b.direction && a.load == b.load;
+    let of_run = |a: &Datum, b: &Datum| a.run == b.run;
+    let repeat: Vec<bool> = found.iter().map(|entry| are_most(&found, entry, &of_load)).collect();
+    let keeps = repeat.iter().zip(as_others).map(|(repeats, is_as_others)| !repeats && !is_as_others);
     let single: Vec<Entry> =
-        found.into_iter().zip(is_single).filter_map(|(entry, is_its)| is_its.then_some(entry)).collect();
-    // nor what most rows of a run do
-    let run = |entry: &Entry| first(entry).run;
-    let of_its_run = |entry: &Entry| single.iter().filter(|other| run(other) == run(entry)).count();
-    let rows_of = |entry: &Entry| instants.values().filter(|own| data[own[0]].run == run(entry)).count();
-    let is_few = |entry: &Entry| of_its_run(entry) < 2 || of_its_run(entry) * FEW_OF_A_RUN <= rows_of(entry);
-    let are_few = single.len() as f64 <= (FEW * instants.len() as f64).max(1.0) && single.iter().all(is_few);
-    if are_few { single } else { Vec::new() }
+        found.into_iter().zip(keeps).filter_map(|(entry, is_kept)| is_kept.then_some(entry)).collect();
+    let are_few = single.len() as f64 <= (FEW * instants.len() as f64).max(1.0);
+    match are_few && !single.iter().any(|entry| are_most(&single, entry, &of_run)) {
+        true => single,
+        false => Vec::new(),
+    }
+}
+
+/// Newtons of what stands in the file.
+fn in_file(unit: LoadColumn) -> f64 {
+    match unit {
+        LoadColumn::Newtons => 1.0,
+        LoadColumn::Kilograms => STANDARD_GRAVITY,
+    }
 }
 
 /// Lines without loads far beyond all others, whose readings scatter by rounding at least: a

@@ -105,6 +105,26 @@ fn two_loads_that_were_hung_in_the_wrong_order_are_both_corrected() {
     cases.check();
 }
 
+/// Half of a run of four loads is wrong then.
+#[test]
+fn two_of_four_loads_that_were_hung_in_the_wrong_order_are_both_corrected() {
+    let file = rod(ROD_5);
+    let mut rows = Vec::new();
+    for (trial, axis) in (1..=4).flat_map(|trial| Axis::ALL.map(|axis| (trial, axis))) {
+        for load in [5.0, 10.0, 15.0, 20.0] {
+            let row = Reading::new(Direction::along(axis), load).with_trial(trial.to_string());
+            rows.push(Axis::ALL.into_iter().fold(row, |row, channel| row.with_offset(channel, 0.0)));
+        }
+    }
+    let mut wrong = read(&file, rows, 3);
+    // the second and the third load along z of the second trial
+    (wrong.rows[21].load, wrong.rows[22].load) = (15.0, 10.0);
+    assert_eq!(
+        found(&wrong, Some(&file)),
+        ["typing_mistake load_n, row 22", "typing_mistake load_n, row 23"]
+    );
+}
+
 /// Where a single channel is read, a load that no other row has was typed wrongly if it shows one
 /// that others have; one that others have is as likely a misread value.
 #[test]

@@ -88,6 +88,8 @@ fn a_contact_that_begins_at_a_load_has_its_corner_and_exponent() {
     assert!(corner.low < 3.6 && 3.6 < corner.high && corner.high - corner.low < 2.0, "{corner:?}");
     assert!(exponent.low < 1.5 && 1.5 < exponent.high && exponent.high < 2.2, "{exponent:?}");
     assert!((law.at(0, 18.0) / (60.0 * (14.4f64 / 8.4).powf(1.5)) - 1.0).abs() < 0.15, "{law:?}");
+    // half again beyond the loads its exponent is open too
+    assert!(law.further.unwrap().1 > 5.0 * law.noise, "{:?}", law.further);
 }
 
 #[test]

@@ -105,6 +105,17 @@ fn sentences_are_those_of_the_laws() {
             "Joint 4 has 300 ± 30 µrad of play, taken up according to the direction of approach: play in its gear",
         ),
         (
+            "backlash",
+            "joint 5",
+            "Joint 5 has 300 ± 30 µrad of play, taken up on the side that its load pulls to: play in its gear",
+        ),
+        (
+            "backlash",
+            "joint 6",
+            "Joint 6 has 300 ± 30 µrad of play, taken up on the side that its load pulls to, or the \
+             tool is loose in its mount: play in its gear",
+        ),
+        (
             "thermal_drift",
             "tool, with temperature",
             "The tool drifts by 35 ± 2 µm per kelvin with temperature: thermal drift",

@@ -1,6 +1,8 @@
 //! Clamps that stand or are turned otherwise than the campaign says, and contact forces in another
 //! unit.
 
+use super::super::draft::Draft;
+use super::super::moves;
 use super::*;
 use crate::rod::Rod;
 
@@ -96,6 +98,16 @@ fn a_contact_force_in_another_unit() {
     let right = tx90();
     let twice = Campaign { contact_force: right.contact_force.map(|force| force * 2.0), ..right };
     assert_eq!(found(&twice), []);
+}
+
+/// Readings that scatter by more than the 2 % between the two leave it to what people do.
+#[test]
+fn kilograms_are_likelier_than_a_decimal_point() {
+    let right = tx90();
+    let forces = [(1, 10.0), (2, 9.80665)];
+    let all = moves::all(&right, &Draft::of(&right), &[], &forces, &[], None, &[]);
+    let prior = |factor: f64| all.iter().find(|own| own.force == Some(factor)).unwrap().log_prior;
+    assert!(prior(10.0) < prior(9.80665) - 1.0);
 }
 
 /// The arm of the campaign with numbers of its file in another unit.

@@ -335,11 +335,19 @@ pub fn sentence(subject: &Subject, finding: &Finding) -> String {
     if others.is_empty() {
         return format!("{description}.");
     }
-    let said =
-        others.iter().take(RIVALS_SAID).map(|(effect, place)| format!(", or {}", (effect.cause_at)(place)));
-    let more = if others.len() > RIVALS_SAID { ", or others" } else { "" };
-    let said = said.collect::<String>();
-    format!("{description}{said}{more}; these {} cannot distinguish them.", subject.noun)
+    let mut said: Vec<String> =
+        others.iter().take(RIVALS_SAID).map(|(effect, place)| (effect.cause_at)(place)).collect();
+    if others.len() > RIVALS_SAID {
+        said.push("others".into());
+    }
+    let (said, noun) = (said.join(", or "), subject.noun);
+    match finding.kind() {
+        // what is wrong ends with what to do about it, which a rival is no other end of
+        Kind::Mistake => {
+            format!("{description}. It may also be {said}; these {noun} cannot distinguish them.")
+        }
+        _ => format!("{description}, or {said}; these {noun} cannot distinguish them."),
+    }
 }
 
 /// Which other clamp, socket, joint or part it may be: the first sentence names none as if it were

@@ -22,6 +22,11 @@ const CAUCHY: f64 = 2.385;
 const ROUNDS: usize = 12;
 /// Nothing is known better than this share of the largest reading.
 const FLOOR: f64 = 1e-6;
+/// A load so many times the largest of the others would draw their line after it; what they say of
+/// its reading is wrong where it is off by so many standard errors and so much of it.
+const BEYOND: f64 = 3.0;
+const ERRORS: f64 = 6.0;
+const OFF: f64 = 0.25;
 
 /// A channel under loads along one axis at one pair of stations, as the file labels them.
 #[derive(Debug, Clone)]
@@ -161,9 +166,43 @@ pub(super) fn fit(points: &[(f64, f64)]) -> Fit {
     found
 }
 
+/// The line through (signed load, reading), without a load far beyond the others whose reading is
+/// not on theirs: no weight of a robust fit takes away what a line is drawn after.
+pub(super) fn fit_without_a_wrong_load(points: &[(f64, f64)]) -> Fit {
+    let all = fit(points);
+    let size = |&(load, _): &(f64, f64)| load.abs();
+    let Some(k) = (0..points.len()).max_by(|&a, &b| size(&points[a]).total_cmp(&size(&points[b]))) else {
+        return all;
+    };
+    let others: Vec<(f64, f64)> = points[..k].iter().chain(&points[k + 1..]).copied().collect();
+    let largest = others.iter().map(size).fold(0.0, f64::max);
+    let differ = others.iter().any(|(load, _)| (load - others[0].0).abs() > 0.2 * largest);
+    if others.len() < 3 || !differ || size(&points[k]) < BEYOND * largest {
+        return all;
+    }
+    let without = fit(&others);
+    let (load, reading) = points[k];
+    let off = (reading - without.at(load)).abs();
+    let is_wrong = off > ERRORS * without.scatter.hypot(without.error * load)
+        && off > OFF * (without.slope * load).abs();
+    if is_wrong { without } else { all }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_load_ten_times_too_large_draws_no_line_after_it() {
+        let mut points: Vec<(f64, f64)> = [5.0, 10.0, 15.0, 20.0, 10.0].map(|f| (f, 45e-6 * f)).to_vec();
+        points[2].0 = 150.0;
+        let fit = fit_without_a_wrong_load(&points);
+        assert!((fit.slope / 45e-6 - 1.0).abs() < 0.01, "{fit:?}");
+        // where its reading is on the line, it says most about the slope
+        points[2].1 = 45e-6 * 150.0;
+        points[1].1 += 3e-6;
+        assert!((fit_without_a_wrong_load(&points).slope / 45e-6 - 1.0).abs() < 1e-3);
+    }
 
     #[test]
     fn zero_play_and_a_wrong_reading_leave_the_slope() {

@@ -51,6 +51,24 @@ fn what_one_trial_is_written_in_the_others_show() {
     cases.check();
 }
 
+/// A load that was typed wrongly in a trial that is in another unit throughout.
+#[test]
+fn a_single_load_of_a_trial_in_another_unit_is_corrected_too() {
+    let mut cases = Cases::default();
+    recordings(&[Bench::Full, Bench::Own], 2, |what, file, clean| {
+        let is_it = |row: &Reading| {
+            (row.direction.axis, row.trial.as_deref(), row.load) == (Axis::Z, Some("3"), 15.0)
+        };
+        let row = clean.rows.iter().position(is_it).unwrap();
+        let mut wrong = clean.clone();
+        wrong.rows[row].load = 150.0;
+        of_trial(&mut wrong, "3").for_each(|row| row.load /= G);
+        let typed = format!("typing_mistake load_n, row {}", row + 1);
+        cases.expect(&what, &wrong, file, &[&typed, "unit_mistake load_n, trial 3"]);
+    });
+    cases.check();
+}
+
 /// Trials at different stations have no line in common: the rod file says what one of them is
 /// written in, also where nothing else was read at its station.
 #[test]

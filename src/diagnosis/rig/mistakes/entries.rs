@@ -19,7 +19,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::super::effects::mistakes::TYPING_MISTAKE;
-use super::lines::{Line, fit};
+use super::lines::{Line, far_load, fit};
 use super::part::Part;
 use super::possible::exact;
 use crate::diagnosis::rig::recording::columns::{columns, load_column};
@@ -222,8 +222,7 @@ fn fit_to_show_loads(data: &[Datum], lines: &[Line]) -> Vec<Line> {
     };
     let rounded = Axis::ALL.map(rounded);
     let own = |line: &Line| {
-        let farthest = line.data.iter().copied().max_by(|&a, &b| data[a].load.total_cmp(&data[b].load));
-        let mut line = farthest.map_or(Cow::Borrowed(line), |own| without(data, line, own)).into_owned();
+        let mut line = without_far_load(data, line).into_owned();
         line.fit.scatter = line.fit.scatter.max(rounded[line.channel.index()]);
         line
     };
@@ -315,18 +314,11 @@ fn load_by_readings(
     })
 }
 
-/// A line, without a datum whose load is so far beyond all others that it would follow that.
-fn without<'a>(data: &[Datum], line: &'a Line, own: usize) -> Cow<'a, Line> {
-    // only the largest load of all is beyond the others
-    if data[own].load < line.largest_load {
-        return Cow::Borrowed(line);
-    }
-    let is_near = |&i: &usize| data[i].order != data[own].order && BEYOND * data[i].load > data[own].load;
-    if line.data.iter().any(is_near) {
-        return Cow::Borrowed(line);
-    }
-    let others: Vec<usize> =
-        line.data.iter().copied().filter(|&i| data[i].order != data[own].order).collect();
+/// A line, without a load so far beyond all others that it would follow that.
+fn without_far_load<'a>(data: &[Datum], line: &'a Line) -> Cow<'a, Line> {
+    let loads: Vec<f64> = line.data.iter().map(|&i| data[i].load).collect();
+    let Some(far) = far_load(&loads, BEYOND) else { return Cow::Borrowed(line) };
+    let others = [&line.data[..far], &line.data[far + 1..]].concat();
     let largest = others.iter().fold(0.0, |most: f64, &i| most.max(data[i].load));
     let points: Vec<(f64, f64)> = others.iter().map(|&i| (data[i].signed_load(), data[i].measured)).collect();
     let has_slope = points.iter().any(|(load, _)| (load - points[0].0).abs() > 1e-6 * largest);

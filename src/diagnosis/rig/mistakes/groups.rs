@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::super::effects::events::SLIP;
 use super::super::effects::mistakes::{OFFSET_MISTAKE, SIGN_MISTAKE};
-use super::lines::{Fit, Line, fit_without_a_wrong_load};
+use super::lines::{Fit, Line, fit};
 use super::part::Part;
 use crate::diagnosis::rig::recording::columns::{axis_rows, column, columns, rows_of, sensor_in_run};
 use crate::diagnosis::rig::recording::datum::Datum;
@@ -45,7 +45,7 @@ pub(super) fn group(data: &[Datum], own: Vec<usize>) -> Group {
     let points: Vec<(f64, f64)> = own.iter().map(|&i| (data[i].signed_load(), data[i].measured)).collect();
     let largest = points.iter().fold(0.0, |most: f64, (x, _)| most.max(x.abs()));
     let has_slope = own.len() >= 3 && points.iter().any(|(x, _)| (x - points[0].0).abs() > 0.2 * largest);
-    Group { fit: fit_without_a_wrong_load(&points), data: own, has_slope }
+    Group { fit: fit(&points), data: own, has_slope }
 }
 
 fn split(data: &[Datum], line: &Line, key: impl Fn(&Datum) -> i64) -> Vec<(i64, Group)> {

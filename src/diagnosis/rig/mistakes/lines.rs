@@ -22,11 +22,12 @@ const CAUCHY: f64 = 2.385;
 const ROUNDS: usize = 12;
 /// Nothing is known better than this share of the largest reading.
 const FLOOR: f64 = 1e-6;
-/// A load so many times the largest of the others would draw their line after it; what they say of
-/// its reading is wrong where it is off by so many standard errors and so much of it.
+/// A load so many times the largest of the others decides alone where their line goes. It is wrong
+/// where its reading is so many standard errors off that of the others, and on it at a load up to
+/// so many times their largest.
 const BEYOND: f64 = 3.0;
 const ERRORS: f64 = 6.0;
-const OFF: f64 = 0.25;
+const AMONG_OTHERS: f64 = 1.5;
 
 /// A channel under loads along one axis at one pair of stations, as the file labels them.
 #[derive(Debug, Clone)]
@@ -166,26 +167,33 @@ pub(super) fn fit(points: &[(f64, f64)]) -> Fit {
     found
 }
 
-/// The line through (signed load, reading), without a load far beyond the others whose reading is
-/// not on theirs: no weight of a robust fit takes away what a line is drawn after.
-pub(super) fn fit_without_a_wrong_load(points: &[(f64, f64)]) -> Fit {
-    let all = fit(points);
-    let size = |&(load, _): &(f64, f64)| load.abs();
-    let Some(k) = (0..points.len()).max_by(|&a, &b| size(&points[a]).total_cmp(&size(&points[b]))) else {
-        return all;
-    };
-    let others: Vec<(f64, f64)> = points[..k].iter().chain(&points[k + 1..]).copied().collect();
-    let largest = others.iter().map(size).fold(0.0, f64::max);
+/// Which of some loads, N, is so many `times` the largest of the others.
+pub(super) fn far_load(loads: &[f64], times: f64) -> Option<usize> {
+    let far = (0..loads.len()).max_by(|&a, &b| loads[a].abs().total_cmp(&loads[b].abs()))?;
+    let others = loads[..far].iter().chain(&loads[far + 1..]);
+    let largest = others.fold(0.0, |most: f64, load| most.max(load.abs()));
+    (loads[far].abs() >= times * largest).then_some(far)
+}
+
+/// Which of the points (signed load N, reading m) of a line has a load far beyond the others and
+/// the reading of a load among them: a robust fit would follow it.
+pub(super) fn wrong_load(points: &[(f64, f64)]) -> Option<usize> {
+    let loads: Vec<f64> = points.iter().map(|(load, _)| *load).collect();
+    let far = far_load(&loads, BEYOND)?;
+    let others = [&points[..far], &points[far + 1..]].concat();
+    let largest = others.iter().fold(0.0, |most: f64, (load, _)| most.max(load.abs()));
     let differ = others.iter().any(|(load, _)| (load - others[0].0).abs() > 0.2 * largest);
-    if others.len() < 3 || !differ || size(&points[k]) < BEYOND * largest {
-        return all;
+    if others.len() < 3 || !differ {
+        return None;
     }
-    let without = fit(&others);
-    let (load, reading) = points[k];
-    let off = (reading - without.at(load)).abs();
-    let is_wrong = off > ERRORS * without.scatter.hypot(without.error * load)
-        && off > OFF * (without.slope * load).abs();
-    if is_wrong { without } else { all }
+    let line = fit(&others);
+    let (load, reading) = points[far];
+    let off = reading - line.at(load);
+    // the load that the reading is of, over the one in the file
+    let share = 1.0 + off / (line.slope * load);
+    let is_among_others = (0.0..=AMONG_OTHERS * largest).contains(&(share * load.abs()));
+    let is_off = off.abs() > ERRORS * line.scatter.hypot(line.error * load);
+    (is_among_others && is_off).then_some(far)
 }
 
 #[cfg(test)]
@@ -193,15 +201,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_load_ten_times_too_large_draws_no_line_after_it() {
-        let mut points: Vec<(f64, f64)> = [5.0, 10.0, 15.0, 20.0, 10.0].map(|f| (f, 45e-6 * f)).to_vec();
-        points[2].0 = 150.0;
-        let fit = fit_without_a_wrong_load(&points);
-        assert!((fit.slope / 45e-6 - 1.0).abs() < 0.01, "{fit:?}");
-        // where its reading is on the line, it says most about the slope
-        points[2].1 = 45e-6 * 150.0;
-        points[1].1 += 3e-6;
-        assert!((fit_without_a_wrong_load(&points).slope / 45e-6 - 1.0).abs() < 1e-3);
+    fn a_load_ten_times_too_large_is_wrong_where_its_reading_shows_it() {
+        let right: Vec<(f64, f64)> = [5.0, 10.0, 15.0, 20.0, 10.0].map(|f| (f, 45e-6 * f)).to_vec();
+        let mut wrong = right.clone();
+        wrong[2].0 = 150.0;
+        assert_eq!((wrong_load(&wrong), wrong_load(&right)), (Some(2), None));
+        wrong[2].0 = -150.0;
+        wrong[2].1 *= -1.0;
+        assert_eq!(wrong_load(&wrong), Some(2));
+        // a reading that is on the line says most about it
+        wrong[2].1 = -45e-6 * 150.0;
+        assert_eq!(wrong_load(&wrong), None);
+        // friction of 2 N: small loads show nothing, and the large one is right
+        let friction = [0.5, 1.0, 1.5, 20.0].map(|f| (f, 45e-6 * f64::max(f - 2.0, 0.0)));
+        assert_eq!(wrong_load(&friction), None);
+        // a sensor at its limit
+        let cut_off = [1.0, 2.0, 3.0, 20.0].map(|f| (f, 45e-6 * f64::min(f, 10.0)));
+        assert_eq!(wrong_load(&cut_off), None);
     }
 
     #[test]

@@ -14,10 +14,12 @@
 //!
 //! Trials at different stations have no line in common: there the rod file stands between them.
 
+use std::collections::BTreeSet;
+
 use super::super::effects::mistakes::SIGN_MISTAKE;
 use super::super::numbering::numbered;
 use super::groups::group;
-use super::lines::{Fit, Line};
+use super::lines::{Fit, Line, wrong_load};
 use super::part::Part;
 use super::possible::PossibleMistake;
 use super::relabelling::Relabelling;
@@ -142,11 +144,22 @@ impl<'a> Table<'a> {
             resolution(own.map(|(datum, _)| datum)) / 12f64.sqrt()
         };
         let rounding: Vec<f64> = (0..trials).map(rounding).collect();
+        // by line and trial
+        let mut parts: Vec<Vec<Vec<usize>>> = vec![vec![Vec::new(); trials]; lines.len()];
+        for (parts, line) in parts.iter_mut().zip(lines) {
+            line.data.iter().for_each(|&i| parts[trial[i]].push(i));
+        }
+        // a load that one channel shows to be wrong is wrong for all that were read under it
+        let point = |&i: &usize| (data[i].signed_load(), data[i].measured);
+        let wrong_order = |part: &Vec<usize>| {
+            let points: Vec<(f64, f64)> = part.iter().map(point).collect();
+            wrong_load(&points).map(|far| data[part[far]].order)
+        };
+        let wrong: BTreeSet<usize> = parts.iter().flatten().filter_map(wrong_order).collect();
         let mut cells = vec![vec![None; lines.len()]; trials];
-        for (k, line) in lines.iter().enumerate() {
-            let mut of_trial: Vec<Vec<usize>> = vec![Vec::new(); trials];
-            line.data.iter().for_each(|&i| of_trial[trial[i]].push(i));
-            for ((cells, own), rounding) in cells.iter_mut().zip(of_trial).zip(&rounding) {
+        for (k, parts) in parts.into_iter().enumerate() {
+            for ((cells, mut own), rounding) in cells.iter_mut().zip(parts).zip(&rounding) {
+                own.retain(|&i| !wrong.contains(&data[i].order));
                 let load = own.iter().fold(0.0, |most: f64, &i| most.max(data[i].load));
                 let group = group(data, own);
                 let fit = Fit { scatter: group.fit.scatter.max(*rounding), ..group.fit };

@@ -18,6 +18,7 @@ pub(super) mod events;
 pub(super) mod fixture;
 pub(super) mod gear;
 pub(super) mod joints;
+mod load_change;
 pub(super) mod loads;
 pub(super) mod mistakes;
 pub(super) mod mounting;

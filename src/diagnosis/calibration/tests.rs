@@ -12,6 +12,7 @@ mod finding;
 mod happened;
 mod laws;
 mod level;
+mod load_change;
 mod loose;
 mod next;
 mod recorded;

@@ -189,6 +189,14 @@ pub(super) fn places_of_all(context: &Context) -> Vec<usize> {
     places(context, &(0..context.configurations.len()).collect::<Vec<_>>())
 }
 
+/// The same with a tenth of the rows at least on either side: what changes earlier or later is
+/// hardly another thing than what is there always.
+pub(in crate::diagnosis::calibration) fn places_amid(context: &Context) -> Vec<usize> {
+    let count = context.configurations.len();
+    let least = count.div_ceil(10);
+    places_of_all(context).into_iter().filter(|&before| before >= least && before + least <= count).collect()
+}
+
 /// A clamp or a socket that moved, or the whole plate of a placement, which may have turned as
 /// well.
 fn shifts(context: &Context, effect: &'static CalibrationEffect) -> Vec<Entry> {

@@ -140,7 +140,7 @@ pub(super) fn gives_way(context: &Context) -> bool {
     context.force_compliance.amax() > 0.0 || joints_give_way(context)
 }
 
-fn joints_give_way(context: &Context) -> bool {
+pub(super) fn joints_give_way(context: &Context) -> bool {
     context.configurations.first().is_some_and(|there| there.compliance.iter().any(|&c| c != 0.0))
 }
 

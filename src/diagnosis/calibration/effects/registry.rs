@@ -9,6 +9,7 @@ use super::events::{JOINT_SHIFT, OUTLIER};
 use super::fixture::{CLAMP_POSE, CLAMP_SHIFT, SOCKET_SHIFT};
 use super::gear::TRANSMISSION_ERROR;
 use super::joints::{GRAVITY_TILT, JOINT_COMPLIANCE, JOINT_NONLINEAR_STIFFNESS};
+use super::load_change::LOAD_CHANGE;
 use super::loads::{GRAVITY_DIRECTION, PAYLOAD_MASS, ROD_MASS, ROD_STIFFNESS, TIP_MASS};
 use super::mounting::{BASE_SHIFT, TOOL_SHIFT};
 use super::play::{BACKLASH, JOINT_FRICTION};
@@ -18,7 +19,7 @@ use super::{CalibrationEffect, Context, Entry, mistakes};
 use crate::inference::{Effect, NotTestable};
 
 /// All of them, as they are listed wherever they are.
-pub static ALL: [&CalibrationEffect; 27] = [
+pub static ALL: [&CalibrationEffect; 28] = [
     &ROD_STIFFNESS,
     &TIP_MASS,
     &ROD_MASS,
@@ -43,6 +44,7 @@ pub static ALL: [&CalibrationEffect; 27] = [
     &SOCKET_SHIFT,
     &BASE_SHIFT,
     &TOOL_SHIFT,
+    &LOAD_CHANGE,
     &JOINT_SHIFT,
     &THERMAL_DRIFT,
     &OUTLIER,

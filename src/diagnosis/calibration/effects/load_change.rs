@@ -1,0 +1,123 @@
+//! A load that was put on, or taken off, while the poses were recorded.
+//!
+//! ```text
+//! at the flange   yield(flange, m·g)
+//! at the tip      R·C^F·Rᵀ·(m·g) + yield(tip, m·g)
+//! ```
+//!
+//! from some row on, m the mass after it less that before it. As a payload, what hangs at the flange
+//! has its centre there: one that might be anywhere would stand for whatever a payload that hangs
+//! there always leaves, being beside the flange, as a load put on after the first poses.
+
+use std::ops::Range;
+
+use super::super::model::CalibrationModel;
+use super::super::model::entry::linear;
+use super::super::model::law::Law;
+use super::fixture::places_amid;
+use super::loads::{FORGOTTEN_AT_TIP, gives_way, joints_give_way, pulled};
+use super::{CalibrationEffect, Context, Entry, Transfer, first, lack, out_of_the_points, own_parameters};
+use crate::inference::{Candidate, Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
+use crate::units::Unit;
+
+/// What an arm picks up or puts down, a gripper or a part, kg.
+const PICKED_UP: f64 = 1.0;
+/// How much rarer it is than other events: whoever records poses keeps the load. As rare as a
+/// mistake, and named at odds as large, lest a few poses far out at the end of a recording are one.
+const RARE: f64 = 0.05;
+const AT_FLANGE: &str = "load of the flange";
+const AT_TIP: &str = "load of the tip";
+
+/// A load that changed.
+pub static LOAD_CHANGE: CalibrationEffect = CalibrationEffect {
+    effect: Effect {
+        name: "load_change",
+        kind: Kind::Event,
+        summary: "a load was put on, or taken off, after one pose",
+        formula: "from some row on, at the tip R·C^F·Rᵀ·(m·g) + yield(tip, m·g), at the flange yield(flange, m·g)",
+        prior: "1 kg at the flange: a gripper, a part; 50 g at the tip: a ball and its holder; as rare as a mistake",
+        parameters: &[(
+            &["mass_kg", "mass_g"],
+            "mass after that pose, less that before it; as if at the flange's centre",
+        )],
+        needs: "joints of known compliance, or a rod; poses in the order of recording, a tenth of them before it and after it",
+        cause: "a load that was put on or taken off",
+        cause_at: |location| format!("another load ({location})"),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: |_| Vec::new(),
+        direct_check: Some("Look up what was put on the arm, or taken off, then."),
+    },
+    candidates: changes,
+    estimates: own_parameters,
+    observed: changed,
+    write: out_of_the_points,
+    transfer: Transfer::Made(stays),
+    event: |_| Some("the load changed".into()),
+};
+
+fn changes(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
+    let places = places_amid(context);
+    let Some(&first) = places.iter().min() else { return Vec::new() };
+    let rows = first..context.configurations.len();
+    let mut all = Vec::new();
+    if joints_give_way(context) {
+        all.push(at_flange(context, rows.clone(), at(context, AT_FLANGE, first)));
+    }
+    if gives_way(context) {
+        all.push(at_tip(context, rows, at(context, AT_TIP, first)));
+    } else {
+        lacks.push(lack(&LOAD_CHANGE, "there is neither a rod nor a joint of known compliance"));
+    }
+    let from = |before: &usize| {
+        let what = |entry: &Entry| if is_of_tip(&entry.candidate) { AT_TIP } else { AT_FLANGE };
+        let before = *before;
+        all.iter()
+            .map(move |entry| entry.starting_at(before, at(context, what(entry), before)))
+            .collect::<Vec<_>>()
+    };
+    let mut changes: Vec<Entry> = places.iter().flat_map(from).collect();
+    let share = RARE / changes.len().max(1) as f64;
+    changes.iter_mut().for_each(|entry| entry.candidate.weight = share);
+    changes
+}
+
+/// Of what the load changed before a row.
+fn at(context: &Context, what: &str, before: usize) -> Location {
+    let row = before - 1;
+    Location::Shift { what: Some(what.into()), row, after: context.pose_name(row) }
+}
+
+fn is_of_tip(candidate: &Candidate) -> bool {
+    candidate.parameters.first().is_some_and(|own| own.unit == Unit::of_key("mass_g"))
+}
+
+fn at_flange(context: &Context, rows: Range<usize>, location: Location) -> Entry {
+    let column = context.part(rows, |_, there| there.joint_deflection(&there.flange.origin, &there.gravity));
+    Entry::new(&LOAD_CHANGE.effect, location, vec![(linear("mass_kg", PICKED_UP), column)])
+}
+
+fn at_tip(context: &Context, rows: Range<usize>, location: Location) -> Entry {
+    let column = context.part(rows, |_, there| pulled(context, there, &there.gravity));
+    Entry::new(&LOAD_CHANGE.effect, location, vec![(linear("mass_g", FORGOTTEN_AT_TIP), column)])
+}
+
+/// The load stays what it was changed to.
+fn stays(context: &Context, candidate: &Candidate, _: &Law) -> Entry {
+    let rows = 0..context.configurations.len();
+    match is_of_tip(candidate) {
+        true => at_tip(context, rows, candidate.location.clone()),
+        false => at_flange(context, rows, candidate.location.clone()),
+    }
+}
+
+fn changed(finding: &Finding, model: &CalibrationModel) -> String {
+    let candidate = finding.parts.first().map(|part| &model.terms.candidates[part.term.candidate]);
+    let (place, unit) = if candidate.is_some_and(is_of_tip) { ("tip", "g") } else { ("flange", "kg") };
+    let mass = first(finding);
+    let (size, way) = (mass.size().with_unit(unit), if mass.value < 0.0 { "less" } else { "more" });
+    match &finding.location {
+        Location::Shift { after, .. } => format!("The {place} carries {size} {way} after {after}"),
+        other => format!("The {place} carries {size} {way}, {other}"),
+    }
+}

@@ -26,6 +26,7 @@ mod may_be_meant;
 mod motion;
 mod moves;
 mod names;
+mod other_masses;
 mod quick;
 mod search;
 mod slips;
@@ -36,7 +37,7 @@ mod typed;
 use self::columns::Silent;
 use self::draft::{Draft, DraftChange};
 use self::held::{held, mostly_held, without_held};
-use self::may_be_meant::{ComparedRods, add_rivals};
+use self::may_be_meant::{ComparedRods, OtherUnit, add_rivals};
 use self::motion::{beside_found, has_moved, measure_moves};
 use self::moves::Other;
 use self::quick::{LoadedRobot, zeros};
@@ -91,6 +92,8 @@ pub struct Mended {
     rods: Vec<(String, Rod)>,
     /// How probable the poses are with those that are as long; `None` where nobody asked.
     compared: Option<ComparedRods>,
+    /// Masses and centres in another unit that explain the poses about as well.
+    other_units: Vec<OtherUnit>,
     /// How it is calibrated.
     options: Options,
     /// Errors of a calibration on what was recorded; `None` where nothing was found.
@@ -130,6 +133,7 @@ pub fn mend(campaign: &Campaign, mode: Mode, others: &Neighbours, options: &Opti
     }
     let mut mended = mended.confirmed(campaign, mode);
     mended.compare_rods();
+    mended.compare_masses()?;
     Ok(mended)
 }
 
@@ -175,6 +179,7 @@ impl Mended {
             is_rod_rewritten: false,
             rods: Vec::new(),
             compared: None,
+            other_units: Vec::new(),
             options: *options,
             recorded: None,
         }
@@ -202,7 +207,7 @@ impl Mended {
     pub fn diagnose(&self) -> Result<CalibrationDiagnosis<'_>> {
         let calibration = calibrate(&self.campaign, self.mode, &self.options)?;
         let mut found = diagnose_calibrated(&self.campaign, calibration)?;
-        add_rivals(&self.campaign, self.compared.as_ref(), &self.options, &mut found);
+        add_rivals(&self.campaign, self.compared.as_ref(), &self.other_units, &self.options, &mut found);
         found.limits.extend(self.compared.iter().flat_map(|rods| rods.limits(&found.diagnosis)));
         let has_failed = found.is_implausible();
         let diagnosis = &mut found.diagnosis;

@@ -6,7 +6,8 @@
 //! with, and is a rival where the poses are about as probable with it.
 
 use super::super::diagnose::CalibrationDiagnosis;
-use super::super::diagnose::prepared::Prepared;
+use super::super::diagnose::hung::{beside_hidden_masses, may_bend, may_hide};
+use super::super::diagnose::prepared::{FirstLook, Prepared};
 use super::super::effects::contact::CONTACT_FORCE_VARIATION;
 use super::super::effects::mistakes::{ROD_MISTAKE, UNIT_MISTAKE};
 use super::super::model::law::Law;
@@ -50,11 +51,28 @@ impl ComparedRods {
     }
 }
 
-/// Adds what may be meant, of the rods that were compared and the units, to what was found of rod
+/// A number of the files in another unit.
+#[derive(Debug, Clone)]
+pub(super) struct OtherUnit {
+    /// Of which key.
+    pub key: String,
+    /// Ln of the odds against it.
+    pub against: f64,
+}
+
+impl OtherUnit {
+    /// The odds against it, 1 at least.
+    pub fn odds(&self) -> f64 {
+        self.against.max(0.0).exp()
+    }
+}
+
+/// Adds what may be meant, of the rods and units that were compared, to what was found of rod
 /// and force.
 pub fn add_rivals(
     campaign: &Campaign,
     rods: Option<&ComparedRods>,
+    units: &[OtherUnit],
     options: &Options,
     found: &mut CalibrationDiagnosis,
 ) {
@@ -69,6 +87,10 @@ pub fn add_rivals(
     let mode = model.calibration.mode;
     for (file, odds) in rods.iter().flat_map(|rods| rods.alike()) {
         let rival = Rival::without_term(&ROD_MISTAKE, Location::key(file), odds.max(1.0));
+        add(&mut found.diagnosis.findings[position], rival);
+    }
+    for unit in units.iter().filter(|unit| unit.against < ALIKE) {
+        let rival = Rival::without_term(&UNIT_MISTAKE, Location::key(&unit.key), unit.odds());
         add(&mut found.diagnosis.findings[position], rival);
     }
     let Some(known) = calibrated(campaign, mode, options) else { return };
@@ -102,8 +124,34 @@ fn calibrated(campaign: &Campaign, mode: Mode, options: &Options) -> Option<f64>
     log_probability(campaign, calibrate(campaign, mode, options).ok()?)
 }
 
+/// How well poses are explained.
+pub(super) struct Explained {
+    /// Ln of their probability with all that explains them best.
+    pub log_probability: f64,
+    /// True where a load, or a rod, is part of it.
+    pub bears_load: bool,
+}
+
+/// How well poses are explained about a calibration.
+pub(super) fn explained(campaign: &Campaign, calibration: Calibration) -> Option<Explained> {
+    let prepared = Prepared::new(campaign, calibration).ok()?;
+    let found = sketch(&prepared.model, &prepared.evidence);
+    let bears_load = may_hide(&prepared, &found.hypothesis);
+    Some(Explained { log_probability: found.log_probability, bears_load })
+}
+
 /// Ln of the probability of the poses with all that explains them best.
 pub(super) fn log_probability(campaign: &Campaign, calibration: Calibration) -> Option<f64> {
+    Some(explained(campaign, calibration)?.log_probability)
+}
+
+/// The same, or that with a mass which the calibration has hidden, where it is more probable.
+pub(super) fn beside_masses(campaign: &Campaign, calibration: Calibration) -> Option<f64> {
     let prepared = Prepared::new(campaign, calibration).ok()?;
-    Some(sketch(&prepared.model, &prepared.evidence).log_probability)
+    let plain = sketch(&prepared.model, &prepared.evidence).log_probability;
+    if !may_bend(&prepared) {
+        return Some(plain);
+    }
+    let beside = beside_hidden_masses(campaign, prepared, &FirstLook::default()).ok()?.prepared;
+    Some(plain.max(sketch(&beside.model, &beside.evidence).log_probability))
 }

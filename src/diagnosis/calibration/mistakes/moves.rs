@@ -5,6 +5,7 @@ mod conventions;
 mod frames;
 mod joints;
 pub(super) mod links;
+pub(super) mod masses;
 pub(super) mod of_rows;
 mod positions;
 pub(super) mod robots;
@@ -56,12 +57,12 @@ impl PossibleMistake {
 /// A robot as its file may be meant.
 pub struct Reading {
     pub robot: Robot,
-    effect: &'static Effect,
-    key: String,
-    log_prior: f64,
-    estimates: Vec<Estimate>,
-    cure: String,
-    why: &'static str,
+    pub(super) effect: &'static Effect,
+    pub(super) key: String,
+    pub(super) log_prior: f64,
+    pub(super) estimates: Vec<Estimate>,
+    pub(super) cure: String,
+    pub(super) why: &'static str,
 }
 
 /// A robot or rod of another file.

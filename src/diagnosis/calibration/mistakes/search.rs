@@ -20,6 +20,7 @@ mod partial;
 pub mod score;
 mod verdict;
 
+pub(super) use self::score::RARE;
 use super::draft::{Draft, DraftChange};
 use super::moves::PossibleMistake;
 use super::quick::{Fit, LoadedRobot, Worthwhile, fit, fit_from};

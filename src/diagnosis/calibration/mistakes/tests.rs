@@ -3,6 +3,7 @@ mod fixtures;
 mod frozen;
 mod held;
 mod moved_base;
+mod other_masses;
 mod parts;
 mod rows;
 mod sagging;

@@ -16,7 +16,7 @@ use crate::statistics::median;
 use crate::units::{DEG, MM};
 
 /// How rare any one of some hundred mistakes is: ln.
-const RARE: f64 = -4.0;
+pub(in super::super) const RARE: f64 = -4.0;
 /// The price of a frame that moved: half of ln 150 for each of its six numbers, and which row.
 const MOVED: f64 = -20.0;
 /// That of a clamp that stands elsewhere, or is turned: its three numbers, and which.

@@ -4,18 +4,21 @@
 //! ```text
 //! a joint that yields otherwise   Jⱼ·τⱼ·Σ_k a_k·cos(π k x)    τⱼ its torque, x from 0 to 1 the
 //!                                                            temperature, the time or the order
+//!                                 a·Jⱼ·τⱼ from a row on, scanned
 //! a tracker of another scale      p·Σ_k a_k·cos(π k x)        p the place of the ball in {W}, x the
 //!                                                            order of the poses
 //!                                 a·p from a row on, scanned
 //! ```
 //!
 //! A grease that warms, a brake that cools, a harmonic drive whose preload fades: else links grow
-//! in the place of the first, and a base that moved stands for the second.
+//! in the place of the first, and a base that moved stands for the second. A bearing or a coupling
+//! that yields at once is else a load that was put on or taken off.
 
 use super::super::model::Context;
 use super::super::model::entry::{Entry, linear};
 use super::curve::{LEAST_TORQUE, MOST, TURN, cosine, curve, scaled};
-use crate::inference::Variable;
+use crate::diagnosis::calibration::effects::fixture::places_amid;
+use crate::inference::{Location, Variable};
 
 /// Cosines along the clock of a drive: it warms up or cools down.
 const OF_DRIVE: usize = 2;
@@ -27,6 +30,7 @@ const JUMPS: usize = 24;
 /// All of them; those of one kind have the prior of one curve together.
 pub(super) fn all(context: &Context) -> Vec<Entry> {
     let mut kinds = clocks(context).into_iter().map(|clock| drives(context, clock)).collect::<Vec<_>>();
+    kinds.extend(drives_from_a_row_on(context));
     kinds.push(scales(context));
     let shared = |mut entries: Vec<Entry>| {
         let share = 1.0 / entries.len().max(1) as f64;
@@ -71,6 +75,29 @@ fn drives(context: &Context, (variable, name, x): Clock) -> Vec<Entry> {
         true => context.revolute().into_iter().filter_map(of_joint).collect(),
         false => Vec::new(),
     }
+}
+
+/// For each joint: any one may wear.
+fn drives_from_a_row_on(context: &Context) -> Vec<Vec<Entry>> {
+    let places = places_amid(context);
+    let Some(&first) = places.iter().min().filter(|_| context.has_masses) else { return Vec::new() };
+    let of_joint = |j: usize| {
+        let most = context.largest(|there| there.torque[j]);
+        if most <= LEAST_TORQUE {
+            return Vec::new();
+        }
+        let along = Some(Variable::Order);
+        let turned = context.turn_from(j, first, |_, there| there.torque[j] / most);
+        let always = curve("", "", along, vec![(linear("turn_urad", TURN), turned)]);
+        let from = |&before: &usize| {
+            let (joint, after) = (j + 1, context.pose_name(before - 1));
+            let label = format!("torque of joint {joint}, after {after}");
+            let follows = format!("follows the torque of joint {joint} from about {after} on");
+            always.starting_at(before, Location::Curve { label, follows, along })
+        };
+        places.iter().map(from).collect::<Vec<_>>()
+    };
+    context.revolute().into_iter().map(of_joint).collect()
 }
 
 /// Of a recording that a tracker made.

@@ -5,9 +5,9 @@
 //! at the tip      R·C^F·Rᵀ·(m·g) + yield(tip, m·g)
 //! ```
 //!
-//! from some row on, m the mass after it less that before it. As a payload, what hangs at the flange
-//! has its centre there: one that might be anywhere would stand for whatever a payload that hangs
-//! there always leaves, being beside the flange, as a load put on after the first poses.
+//! from some row on, m the mass after it less that before it. As a payload, what hangs at the
+//! flange has its centre there: one that might be anywhere would stand for whatever a payload that
+//! hangs there always leaves, being beside the flange, as a load put on after the first poses.
 
 use std::ops::Range;
 

@@ -9,9 +9,9 @@
 //! ln odds = ln p(poses | other unit) − ln p(poses | file) + ln prior
 //! ```
 //!
-//! From odds of 1000 on that unit is meant. Where a load is found instead, a unit within 1:20 is its
-//! rival. Where a calibration leaves about as much with either, drives being stiff or links alone
-//! being heavy, these poses say nothing of it, and nothing is said.
+//! From odds of 1000 on that unit is meant. Where a load is found instead, a unit within 1:20 is
+//! its rival. Where a calibration leaves about as much with either, drives being stiff or links
+//! alone being heavy, these poses say nothing of it, and nothing is said.
 
 use super::Mended;
 use super::may_be_meant::{Explained, OtherUnit, beside_masses, explained};

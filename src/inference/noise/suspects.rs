@@ -6,12 +6,13 @@ use super::scatter::Suspect;
 use crate::inference::Evidence;
 
 /// True where so many data are far off that they are no single ones: of all, of one series, one
-/// after the other, or at one moment.
+/// after the other, at one moment, or all repeats of one reading.
 pub fn are_many(evidence: &Evidence, suspects: &[Suspect]) -> bool {
     suspects.len() > at_most(evidence.recorded)
         || are_of_one_series(evidence, suspects)
         || are_together(evidence, suspects)
         || are_at_once(evidence, suspects)
+        || are_repeats(evidence, suspects)
 }
 
 /// Of so many data that many may be far off by themselves: a tenth, three at least.
@@ -68,6 +69,25 @@ fn are_at_once(evidence: &Evidence, suspects: &[Suspect]) -> bool {
         moments.entry(evidence.instant[suspect.datum]).or_default().1 += 1;
     }
     moments.values().any(|&(count, far)| far > 1 && far == count)
+}
+
+/// True where all repeats of a reading are far off to one side, three at least, or two where they
+/// are half of all that is far off: what repeats agree on is no mistake of one of them.
+fn are_repeats(evidence: &Evidence, suspects: &[Suspect]) -> bool {
+    const SURE: usize = 3;
+    // how many, and how many of them are far off to either side
+    let mut groups: BTreeMap<usize, (usize, [usize; 2])> = BTreeMap::new();
+    for &group in evidence.replicate_group.iter().take(evidence.recorded) {
+        groups.entry(group).or_default().0 += 1;
+    }
+    for suspect in suspects {
+        if let Some(&group) = evidence.replicate_group.get(suspect.datum) {
+            groups.entry(group).or_default().1[usize::from(suspect.sigma > 0.0)] += 1;
+        }
+    }
+    let whole = || groups.values().filter(|(count, far)| *count > 1 && far.contains(count));
+    let in_whole: usize = whole().map(|(count, _)| count).sum();
+    whole().any(|(count, _)| *count >= SURE) || (in_whole > 0 && 2 * in_whole >= suspects.len())
 }
 
 #[cfg(test)]
@@ -129,5 +149,24 @@ mod tests {
         evidence.instant = (0..60).map(|datum| datum / 3).collect();
         assert!(are_many(&evidence, &suspects));
         assert!(!are_many(&evidence, &suspects[..2]));
+    }
+
+    #[test]
+    fn what_all_repeats_show_is_no_single_one() {
+        let far = |data: &[(usize, f64)], repeats: usize| {
+            let mut evidence = Evidence::new(DVector::zeros(120));
+            // each run goes through the same readings
+            evidence.replicate_group = (0..120).map(|datum| datum % (120 / repeats)).collect();
+            evidence.shared = (0..120).map(|datum| datum / (120 / repeats)).collect();
+            let suspects: Vec<Suspect> =
+                data.iter().map(|&(datum, sigma)| Suspect { datum, sigma }).collect();
+            are_many(&evidence, &suspects)
+        };
+        assert!(far(&[(7, 5.0), (47, 6.0), (87, 5.0)], 3));
+        assert!(!far(&[(7, 5.0), (47, -6.0), (87, 5.0)], 3) && !far(&[(7, 5.0), (47, 6.0), (90, 5.0)], 3));
+        // two may be chance, unless they are all, or half
+        assert!(far(&[(7, 5.0), (67, 6.0)], 2));
+        assert!(far(&[(7, 5.0), (67, 6.0), (20, 5.0), (90, 5.0)], 2));
+        assert!(!far(&[(7, 5.0), (67, 6.0), (20, 5.0), (90, 5.0), (30, -5.0)], 2));
     }
 }

@@ -33,12 +33,15 @@ mod physics;
 mod possible;
 mod relabelling;
 mod rods;
+mod same_load;
 mod search;
 mod sensors;
+mod shown_loads;
 mod some_rows;
 #[cfg(test)]
 mod tests;
 mod trials;
+mod weights;
 
 pub(super) use self::labels::{is_like_a_rod, is_unknown_unit};
 pub(super) use self::lookalikes::{is_one_factor, lookalikes};
@@ -83,6 +86,7 @@ pub(super) fn mended(readings: &Readings, rod: Option<&Rod>, others: &[(String, 
     mended.sensors()?;
     if mended.has_data {
         mended.labels(others)?;
+        mended.weights();
         mended.zeros();
     }
     mended.has_data = mended.has_data && mended.has_slope();

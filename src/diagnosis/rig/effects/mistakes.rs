@@ -86,6 +86,20 @@ pub static TYPING_MISTAKE: Effect = Effect {
     ..NONE
 };
 
+/// A weight that is another one than it is said to be.
+pub static WEIGHT_MISTAKE: Effect = Effect {
+    name: "weight_mistake",
+    summary: "a weight is another one than it is said to be: all its rows show that",
+    formula: "load = Σ w·s·(y − a)/Σ w·s² of the readings of all its rows",
+    parameters: &[(&["n"], "the load by its readings")],
+    prior: "of one load between the least and the largest: 8 σ off, and five times as far as any other",
+    needs: "five loads, each in two runs",
+    cause: "a weight that is another one",
+    cause_at: |location| at("a weight that is another one", location),
+    direct_check: Some("Weigh it."),
+    ..NONE
+};
+
 /// A trial that is another one once more.
 pub static COPY_MISTAKE: Effect = Effect {
     name: "copy_mistake",

@@ -34,13 +34,14 @@ pub static ALL: [&RigEffect; 22] = [
 
 /// Every mistake that the diagnosis of a rig knows. They are no terms of a model: they are undone
 /// before there is one.
-pub static MISTAKES: [&Effect; 12] = [
+pub static MISTAKES: [&Effect; 13] = [
     &mistakes::UNIT_MISTAKE,
     &mistakes::SIGN_MISTAKE,
     &mistakes::SWAP_MISTAKE,
     &mistakes::ROW_MISTAKE,
     &mistakes::INCREMENT_MISTAKE,
     &mistakes::TYPING_MISTAKE,
+    &mistakes::WEIGHT_MISTAKE,
     &mistakes::COPY_MISTAKE,
     &mistakes::OFFSET_MISTAKE,
     &mistakes::ROD_MISTAKE,

@@ -25,6 +25,7 @@ use super::limits::without_limits;
 use super::lines::{Fit, fit};
 use super::part::Part;
 use super::possible::exact;
+use super::same_load::left_by_any_curve;
 use super::search::ODDS;
 use crate::diagnosis::rig::recording::chronicle::Chronicle;
 use crate::diagnosis::rig::recording::columns::{columns, load_column, rows_between};
@@ -42,7 +43,9 @@ const PRICE: f64 = 1e-3;
 const LEAST: usize = 4;
 const OFF: f64 = 0.12;
 const LEFT: f64 = 0.1;
-/// At most this share of what was left before, rms.
+/// What is left less than this, rms, needs no other explanation.
+const WELL: f64 = 0.03;
+/// At most this share of what was left before, rms, or by a curve.
 const CURED: f64 = 0.5;
 /// Another displacement that leaves no more than so many times as much explains alike.
 const NO_WORSE: f64 = 1.1;
@@ -102,6 +105,11 @@ pub(super) fn found(rows: &[Reading], load: LoadColumn) -> Option<Displaced> {
     // the rows that it could start and end at are choices too
     let odds = rows.len() as f64 * (left / best.left.max(f64::MIN_POSITIVE)).sqrt().ln();
     if best.left.sqrt() > CURED * left.sqrt() || odds < ODDS + 2.0 * (rows.len() as f64).ln() {
+        return None;
+    }
+    // a sensor that jumps or wraps shows the same at the same load, which no rows of other loads do
+    let by_curve = left_by_any_curve(&known, &sheet.label, &sheet.deflection, CAP);
+    if best.left > WELL * WELL && by_curve.is_some_and(|left| left < CURED * CURED * best.left) {
         return None;
     }
     let place = |one: &Tried| sheet.place(one, load);

@@ -1,52 +1,38 @@
 //! Loads that were typed wrongly in single rows.
 //!
-//! All channels of an instant know its load:
-//!
-//! ```text
-//! F = Σ w·s·(y − a) / Σ w·s²,   w = 1/σ²
-//! ```
-//!
-//! s, a and σ slope, zero and scatter of the line of each channel, without loads far beyond all
-//! others. Where that is far from the load in the file, two channels or more contradict the file
-//! and all agree with it, the load is wrong and not a reading; a single channel is a suspect
-//! reading like any other, but where the load in the file is in no other row and the one that it
-//! shows is, or where two rows of a run show each other's loads. Which number was meant: another
-//! load of the recording, its decimal point elsewhere, or two neighbouring digits exchanged; one
-//! that is both, another load and of these digits, before the nearest. What other rows of the same
-//! load show as well, or most rows of a run, was not typed wrongly.
+//! All channels of an instant know its load (`shown_loads.rs`). Where that is far from the load in
+//! the file, two channels or more contradict the file and all agree with it, the load is wrong and
+//! not a reading; a single channel is a suspect reading like any other, but where the load in the
+//! file is in no other row and the one that it shows is, or where two rows of a run show each
+//! other's loads. Which number was meant: another load of the recording, its decimal point
+//! elsewhere, or two neighbouring digits exchanged; one that is both, another load and of these
+//! digits, before the nearest. What other rows of the same load show as well, or most rows of a
+//! run, was not typed wrongly.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::super::effects::mistakes::TYPING_MISTAKE;
-use super::lines::{Line, far_load, fit};
+use super::lines::Line;
 use super::part::Part;
 use super::possible::exact;
+use super::shown_loads::{AGREE, LoadByReadings, SCATTERS, ShownLoads};
 use crate::diagnosis::rig::recording::columns::{columns, load_column};
 use crate::diagnosis::rig::recording::datum::Datum;
-use crate::diagnosis::rig::recording::resolution::resolution;
 use crate::inference::{Estimate, Key};
 use crate::rig::readings::LoadColumn;
 use crate::spatial::Axis;
 use crate::statistics::median;
 use crate::units::{STANDARD_GRAVITY, significant};
 
-/// A load is wrong that its readings are so far from: in scatters, and as a share of a usual one.
-const SCATTERS: f64 = 8.0;
+/// A load is wrong that its readings are so far from, as a share of a usual one.
 const FAR: f64 = 0.1;
-/// How well the channels of a row agree about its load, in scatters, and how near it must come to
-/// a number that it may be, as a share.
-const AGREE: f64 = 4.0;
+/// How near a load must come to a number that it may be, as a share.
 const NEAR: f64 = 0.02;
 /// By how much a load that has only one of the two reasons, the digits and another row, is less
 /// likely than one of both (the logarithm of odds).
 const ONE_REASON: f64 = 3.0;
-/// A load so many times the others' largest would draw its line after it.
-const BEYOND: f64 = 1.3;
 /// Loads may be so many times a usual one.
 const MOST: f64 = 150.0;
-/// Lines of fewer readings say nothing of one of them.
-const LEAST: usize = 6;
 /// At most this share of the rows.
 const FEW: f64 = 0.1;
 
@@ -59,32 +45,13 @@ pub(super) struct Entry {
     pub load: Option<f64>,
 }
 
-/// The load of a row by its readings.
-struct LoadByReadings {
-    /// N, with its standard error.
-    load: f64,
-    error: f64,
-    /// How far those are off the load in the file that contradict it most, in scatters.
-    against: [f64; 2],
-    /// How far the reading that agrees the least is off it, in scatters.
-    off: f64,
-}
-
 /// Loads of single rows that all their readings contradict.
 pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Entry> {
-    let mut line_of: Vec<Option<usize>> = vec![None; data.len()];
-    for (k, line) in lines.iter().enumerate().filter(|(_, line)| line.data.len() >= LEAST) {
-        line.data.iter().for_each(|&i| line_of[i] = Some(k));
-    }
-    let lines = &fit_to_show_loads(data, lines);
-    let mut instants: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    data.iter().enumerate().for_each(|(i, datum)| instants.entry(datum.order).or_default().push(i));
+    let known = ShownLoads::of(data, lines);
     let levels: Vec<f64> = data.iter().map(|datum| datum.load).collect();
     let usual = median(&levels).unwrap_or(0.0);
     let in_file = in_file(unit);
-    let by_readings = |own: &[usize]| load_by_readings(data, lines, &line_of, own);
-    let shown: Vec<(&[usize], LoadByReadings)> =
-        instants.values().filter_map(|own| Some((&own[..], by_readings(own)?))).collect();
+    let shown = known.all();
     // the weights of two rows of a run hung in the wrong order: each shows the other one's load
     let is_exchanged = |own: &[usize], load: f64| {
         let datum = &data[own[0]];
@@ -127,10 +94,10 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
         if shown.against[0] < if is_known { AGREE } else { SCATTERS } {
             continue;
         }
-        found.push(entry(data, own, unit, shown, meant, apart * most_slope(lines, &line_of, own)));
-        as_others.push(is_as_others(data, lines, &line_of, own, apart));
+        found.push(entry(data, own, unit, shown, meant, apart * known.most_slope(own)));
+        as_others.push(is_as_others(&known, own, apart));
     }
-    few(data, &instants, found, &as_others)
+    few(data, &known.instants, found, &as_others)
 }
 
 /// What is said of a load, and done: `meant` (N) is written instead, or the row is left out.
@@ -213,46 +180,19 @@ fn in_file(unit: LoadColumn) -> f64 {
     }
 }
 
-/// Lines without loads far beyond all others, whose readings scatter by rounding at least: a
-/// display that shows one number for most loads knows none of these.
-fn fit_to_show_loads(data: &[Datum], lines: &[Line]) -> Vec<Line> {
-    let rounded = |channel: Axis| {
-        let step = resolution(data.iter().filter(|datum| datum.channel == channel));
-        step / 12f64.sqrt()
-    };
-    let rounded = Axis::ALL.map(rounded);
-    let own = |line: &Line| {
-        let mut line = without_far_load(data, line).into_owned();
-        line.fit.scatter = line.fit.scatter.max(rounded[line.channel.index()]);
-        line
-    };
-    lines.iter().map(own).collect()
-}
-
 /// As it stands in a file: without what conversions leave in the last digits.
 fn number(value: f64) -> String {
     format!("{}", (value * 1e6).round() / 1e6)
 }
 
-/// A line that shows its loads and this one, N.
-fn shows(line: &Line, load: f64) -> bool {
-    line.fit.slope.abs() * line.largest_load.max(load.abs()) > 2.0 * SCATTERS * line.fit.scatter
-        && line.fit.slope.abs() > AGREE * line.fit.error
-}
-
 /// True where other rows of the same load show what this one does: not half as far from it as its
 /// load is `apart` from the one in the file, N. Friction, play and curves do.
-fn is_as_others(
-    data: &[Datum],
-    lines: &[Line],
-    line_of: &[Option<usize>],
-    own: &[usize],
-    apart: f64,
-) -> bool {
+fn is_as_others(known: &ShownLoads, own: &[usize], apart: f64) -> bool {
+    let data = known.data;
     // the load by which it differs from theirs, by all channels as each knows it
     let (mut top, mut bottom) = (0.0, 0.0);
     for &i in own {
-        let Some(line) = line_of[i].map(|k| &lines[k]) else { continue };
+        let Some(line) = known.line(i) else { continue };
         let is_other = |other: &&usize| {
             let other = &data[**other];
             other.order != data[i].order
@@ -262,67 +202,11 @@ fn is_as_others(
         };
         let others: Vec<f64> = line.data.iter().filter(is_other).map(|&other| data[other].measured).collect();
         let Some(others) = median(&others) else { continue };
-        let weight = scatter_of(line).powi(-2);
+        let weight = line.scatter_of_readings().powi(-2);
         top += weight * line.fit.slope * (data[i].measured - others);
         bottom += weight * line.fit.slope.powi(2);
     }
     bottom > 0.0 && (top / bottom).abs() < 0.5 * apart
-}
-
-/// What a reading of a line scatters by, m: no line is straighter than this share of its largest.
-fn scatter_of(line: &Line) -> f64 {
-    line.fit.scatter.max(1e-4 * line.fit.slope.abs() * line.largest_load)
-}
-
-fn most_slope(lines: &[Line], line_of: &[Option<usize>], own: &[usize]) -> f64 {
-    own.iter().filter_map(|&i| Some(lines[line_of[i]?].fit.slope.abs())).fold(0.0, f64::max)
-}
-
-fn load_by_readings(
-    data: &[Datum],
-    lines: &[Line],
-    line_of: &[Option<usize>],
-    own: &[usize],
-) -> Option<LoadByReadings> {
-    let line = |&i: &usize| Some((&data[i], &lines[line_of[i]?]));
-    let known: Vec<(&Datum, &Line)> =
-        own.iter().filter_map(line).filter(|(_, line)| line.has_slope).collect();
-    let without_play = |datum: &Datum, line: &Line| {
-        datum.measured - line.fit.zero - line.fit.play * f64::from(datum.direction.sign)
-    };
-    let (mut top, mut bottom) = (0.0, 0.0);
-    for (datum, line) in &known {
-        let weight = scatter_of(line).powi(-2);
-        top += weight * line.fit.slope * without_play(datum, line);
-        bottom += weight * line.fit.slope.powi(2);
-    }
-    let load = top / bottom;
-    let off = |load: f64, (datum, line): &(&Datum, &Line)| {
-        // the slope is known to its error only
-        let sigma = scatter_of(line).hypot(line.fit.error * load);
-        ((without_play(datum, line) - line.fit.slope * load) / sigma).abs()
-    };
-    let in_file = known.first().map(|(datum, _)| datum.signed_load())?;
-    let showing = known.iter().filter(|(_, line)| shows(line, in_file));
-    let mut against: Vec<f64> = showing.map(|one| off(in_file, one)).chain([0.0; 2]).collect();
-    against.sort_by(|a, b| b.total_cmp(a));
-    load.is_finite().then(|| LoadByReadings {
-        load,
-        error: bottom.powf(-0.5),
-        against: [against[0], against[1]],
-        off: known.iter().map(|one| off(load, one)).fold(0.0, f64::max),
-    })
-}
-
-/// A line, without a load so far beyond all others that it would follow that.
-fn without_far_load<'a>(data: &[Datum], line: &'a Line) -> Cow<'a, Line> {
-    let loads: Vec<f64> = line.data.iter().map(|&i| data[i].load).collect();
-    let Some(far) = far_load(&loads, BEYOND) else { return Cow::Borrowed(line) };
-    let others = [&line.data[..far], &line.data[far + 1..]].concat();
-    let largest = others.iter().fold(0.0, |most: f64, &i| most.max(data[i].load));
-    let points: Vec<(f64, f64)> = others.iter().map(|&i| (data[i].signed_load(), data[i].measured)).collect();
-    let has_slope = points.iter().any(|(load, _)| (load - points[0].0).abs() > 1e-6 * largest);
-    Cow::Owned(Line { fit: fit(&points), largest_load: largest, has_slope, data: others, ..line.clone() })
 }
 
 /// The load that was meant, N: one that another row has, or the written one with its decimal point

@@ -22,6 +22,8 @@ const CAUCHY: f64 = 2.385;
 const ROUNDS: usize = 12;
 /// Nothing is known better than this share of the largest reading.
 const FLOOR: f64 = 1e-6;
+/// No line is straighter than this share of its largest reading.
+const STRAIGHT: f64 = 1e-4;
 /// A load so many times the largest of the others decides alone where their line goes. It is wrong
 /// where its reading is so many standard errors off that of the others, and on it at a load up to
 /// so many times their largest.
@@ -72,6 +74,11 @@ impl Line {
     pub fn holds(&self, datum: &Datum) -> bool {
         let stations = [datum.load_station, datum.read_station];
         (self.axis, self.channel, self.stations) == (datum.direction.axis, datum.channel, stations)
+    }
+
+    /// What a reading scatters by, m: no line is straighter than this share of its largest.
+    pub fn scatter_of_readings(&self) -> f64 {
+        self.fit.scatter.max(STRAIGHT * self.fit.slope.abs() * self.largest_load)
     }
 
     /// True where load and sensor are at one place: the rod gives way towards the load there.

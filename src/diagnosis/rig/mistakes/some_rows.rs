@@ -3,7 +3,7 @@
 use super::labels::{self, Labels};
 use super::lines::lines;
 use super::mended::{Mended, Zero};
-use super::{copies, displaced, entries, groups, increments, sensors, trials};
+use super::{copies, displaced, entries, groups, increments, sensors, trials, weights};
 use crate::diagnosis::rig::recording::datum;
 use crate::error::Result;
 use crate::inference::Location;
@@ -106,6 +106,15 @@ impl Mended {
             self.add_part(part);
         }
         Ok(())
+    }
+
+    /// A weight that is another one.
+    pub(super) fn weights(&mut self) {
+        let data = datum::all(&self.readings.rows);
+        if let Some(part) = weights::found(&data, &lines(&data, |_| true), self.readings.load_column) {
+            self.leave_out(&data, &part);
+            self.add_part(part);
+        }
     }
 
     /// Zeros that were not taken.

@@ -5,6 +5,7 @@ mod labels;
 mod named;
 mod parts;
 mod sensors;
+mod weights;
 
 use super::mended::Mended;
 use super::*;

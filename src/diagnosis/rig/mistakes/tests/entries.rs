@@ -170,3 +170,25 @@ fn what_was_meant_has_the_digits_that_were_written() {
         assert_eq!(load, meant, "{written}, {off} scatters off");
     }
 }
+
+/// Of two channels neither shows loads well enough, both together do.
+#[test]
+fn two_coarse_channels_correct_a_load_together() {
+    const SEEDS: u64 = 20;
+    let is_found = |seed: &u64| {
+        let mut random = Random::seeded(*seed, 0);
+        let mut text = "axis,load_n,trial,dx_um,dz_um\n".to_owned();
+        let rows = |trial| [2.5, 5.0, 7.5, 10.0, 12.5, 15.0].map(|load| (trial, load));
+        for (trial, load) in (1..=4).flat_map(rows) {
+            // 15 N are 13 scatters of each
+            let [x, z] = [4.0, -8.0].map(|slope: f64| slope * (load + 1.15 * random.normal()));
+            let typed = if (trial, load) == (3, 12.5) { 1.25 } else { load };
+            text += &format!("x,{typed},{trial},{x:.1},{z:.1}\n");
+        }
+        let named = found(&Readings::from_text("f", &text).unwrap(), None);
+        assert!(named.is_empty() || named == ["typing_mistake load_n, row 17"], "{seed}: {named:?}");
+        !named.is_empty()
+    };
+    let found = (0..SEEDS).filter(is_found).count();
+    assert!(found > 9, "{found} of {SEEDS}");
+}

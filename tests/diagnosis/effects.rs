@@ -78,6 +78,22 @@ fn joint_compliance_that_nobody_declared() {
     }
 }
 
+/// An arc gives way all along or in one place: large enough, the readings tell which.
+#[test]
+fn joint_compliance_in_the_bend() {
+    let spec = CaseSpec { bend_radius: 60.0 * MM, ..CaseSpec::default() };
+    let [bending, torsion] = joint(&spec, 2.0, 2.0);
+    let rod = Rod::from_toml("rod", &spec.simulated(&[], SEED).rod).unwrap();
+    let [start, end] = [rod.bend_start(), rod.bend_end()];
+    let station = start + 0.3 * (end - start);
+    let effect = Effect::Joint { name: None, station, bending, torsion };
+    let answer = Answer::simulated(&spec, &[effect], SEED);
+    assert_eq!(answer.effects(), ["joint_compliance"], "{}", answer.json["headline"]);
+    assert!(answer.json["headline"].as_str().unwrap().contains(", in the bend ("));
+    let [low, _, high] = interval(&answer.findings()[0], "station_mm");
+    assert!(low * MM <= station && station <= high * MM, "{low} … {station} … {high}");
+}
+
 #[test]
 fn root_compliance() {
     let spec = CaseSpec::default();

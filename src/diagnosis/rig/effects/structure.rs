@@ -139,7 +139,8 @@ pub static JOINT_COMPLIANCE: RigEffect = RigEffect {
                     .map(|rival| format!(", or the joint \"{}\"", rival.location))
                     .collect();
                 let (low, high) = (low / MM, high / MM);
-                format!("At {place} (between {low:.0} and {high:.0} mm{declared}) the rod")
+                let in_bend = if is_in_arc(place, model) { ", in the bend" } else { "" };
+                format!("At {place}{in_bend} (between {low:.0} and {high:.0} mm{declared}) the rod")
             }
             (None, Location::Station(_)) => format!("At {place} the rod"),
             (None, named) => format!("The joint \"{named}\""),
@@ -247,7 +248,8 @@ fn roots(context: &mut Context) -> Vec<Entry> {
 
 /// Declared joints, then joints that nobody declared along the rod. A value is a joint's whole
 /// compliance, to be written into the rod file. A joint that nobody declared may be anywhere up to
-/// half way to the next stations of the scan, or up to the bend.
+/// half way to the next stations of the scan, or up to the bend; within an arc too, which gives way
+/// in one place otherwise than all along (`BEND_FLEXIBILITY`): where the readings tell which.
 fn joints(context: &mut Context) -> Vec<Entry> {
     let (Body::Rod(structure), Some(rod)) = (&mut *context.body, context.rod) else {
         return Vec::new();
@@ -266,16 +268,12 @@ fn joints(context: &mut Context) -> Vec<Entry> {
         )
     };
     let mut entries = Vec::new();
-    let structure_has_arc = structure.has_arc();
     for declared in &rod.joints {
         let location = Location::Named(declared.name.clone());
         let of_file = [declared.bending, declared.torsion];
         entries.push(joint(structure, &JOINT_COMPLIANCE, location, declared.station, of_file, None));
     }
-    // a hinge inside the arc is the bend
-    let (start, end) = (rod.bend_start(), rod.bend_end());
-    let is_in_arc = |station: f64| structure_has_arc && start < station && station < end;
-    for &station in scan.iter().filter(|station| !is_in_arc(**station)) {
+    for &station in &scan {
         let location = Location::Station(station);
         let range = Some(range(station));
         entries.push(joint(structure, &JOINT_COMPLIANCE, location, station, [0.0; 2], range));
@@ -342,6 +340,13 @@ fn stretch(finding: &Finding, model: &RigModel) -> Option<(f64, f64)> {
     let mut numbers = actions.iter().zip(&finding.estimates);
     let (_, station) = numbers.find(|(action, _)| matches!(action, Action::Station(_)))?;
     Some((station.low, station.high))
+}
+
+/// True of a station within the arc of a bend that has one.
+fn is_in_arc(place: &Location, model: &RigModel) -> bool {
+    let (Location::Station(station), Body::Rod(structure)) = (place, &model.body) else { return false };
+    let rod = structure.rod();
+    structure.has_arc() && (rod.bend_start()..rod.bend_end()).contains(station)
 }
 
 /// By how much a joint gives way; only what differs from the rod file, unless nothing does for

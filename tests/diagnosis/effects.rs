@@ -82,7 +82,7 @@ fn joint_compliance_that_nobody_declared() {
 #[test]
 fn joint_compliance_in_the_bend() {
     let spec = CaseSpec { bend_radius: 60.0 * MM, ..CaseSpec::default() };
-    let [bending, torsion] = joint(&spec, 2.0, 2.0);
+    let [bending, torsion] = joint(&spec, 0.8, 0.8);
     let rod = Rod::from_toml("rod", &spec.simulated(&[], SEED).rod).unwrap();
     let [start, end] = [rod.bend_start(), rod.bend_end()];
     let station = start + 0.3 * (end - start);

@@ -14,6 +14,8 @@
 //! load on all lines: then physics that acts on all lines alike, such as relaxation with one time
 //! constant or a seat that gives way, is one rival and not many.
 //!
+//! What all sensors show of the loads along an axis has a curve for each of them ([`all_sensors`]).
+//!
 //! What the load before leaves behind, the time since its change and the speed of that multiply
 //! deflections ([`before`]). A force against the motion that is not the same throughout has its
 //! size as a curve ([`held_back`]).
@@ -27,6 +29,7 @@
 //! goes in time has finer curves besides, of [`FINE`] columns of which the first
 //! half are of one size.
 
+mod all_sensors;
 mod along;
 mod before;
 mod cosines;
@@ -112,6 +115,7 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
     entries.extend(held_back::all(data, &before::slopes(data, deflections), &before, &levels));
     entries.extend(swing::of_displays(data, deflections));
     entries.extend(along_the_load(data));
+    entries.extend(all_sensors::under_loads(data, &levels));
     entries.extend(kink::all(data, deflections));
     if let Body::Rod(structure) = body {
         entries.extend(slopes(data, deflections, &lines));

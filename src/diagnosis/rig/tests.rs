@@ -195,6 +195,7 @@ fn effects_and_places_are_named_once() {
         "joint_compliance",
         "root_compliance",
         "friction",
+        "pulley_friction",
         "load_offset",
         "backlash",
         "creep",

@@ -177,6 +177,8 @@ pub enum Part {
     Bend,
     /// The slide through which the rig's loads act.
     Slide,
+    /// The pulleys over which the rig's loads pull.
+    Pulley,
     /// What the rig's loads hang on.
     Hanger,
     /// What holds the rod on the rig.
@@ -373,6 +375,7 @@ impl fmt::Display for Part {
             Part::Root => "root",
             Part::Bend => "bend",
             Part::Slide => "slide",
+            Part::Pulley => "pulley",
             Part::Hanger => "hanger",
             Part::Clamp => "clamp",
             Part::Tip => "tip",

@@ -69,6 +69,7 @@ impl RigModel {
     fn is_of_compliance(&self, term: &Term) -> bool {
         self.actions[term.candidate].iter().all(|action| match action {
             Action::Friction(_)
+            | Action::PulleyFriction(_)
             | Action::Presliding
             | Action::SliderPlay
             | Action::LoadOffset(_)

@@ -13,6 +13,8 @@ use crate::units::{DEG, UM, significant};
 
 /// Friction of a slide as a share of the largest load.
 const SLIDE: f64 = 0.05;
+/// What a pulley holds back of a load.
+const PULLEY: f64 = 0.03;
 /// What friction holds back of a hung load, or a tare takes away from it, at most, as a share of
 /// the largest load: of what a slide holds whole nothing is known, and any rod would fit it.
 const MOST_OF_LOAD: f64 = 0.5;
@@ -94,6 +96,47 @@ pub static FRICTION: RigEffect = RigEffect {
             ),
             false => format!("About {force} of {load} does not reach the rod (no unloading was recorded)"),
         }
+    },
+    write: out_of_the_readings,
+};
+
+/// Friction of the pulleys over which loads pull.
+pub static PULLEY_FRICTION: RigEffect = RigEffect {
+    effect: Effect {
+        name: "pulley_friction",
+        kind: Kind::Physics,
+        summary: "friction of a pulley holds back a share of each load",
+        formula: "F = load·(1 − μ) while loading, load·(1 + μ) while unloading (not above what was felt at \
+            the turn)",
+        prior: "3 % of each load: a pulley on a rolling bearing takes 1 to 3 %, on a plain one 5 to 10 %",
+        parameters: &[(&["fraction"], "μ: what friction holds back, over the load")],
+        needs: "loads that were taken off again; without that it is the stiffness",
+        cause: "friction of a pulley",
+        cause_at: |location| "friction of a pulley".to_owned() + &under(location),
+        written_to: WrittenTo::Recording,
+        reported: Reported::Alone,
+        seen_along: along_the_load,
+        direct_check: Some("Turn the pulley a little by hand under the load, and read again."),
+    },
+    usual: &[Usual::Share(PULLEY)],
+    needs_rod: false,
+    candidates: |context| {
+        let is_hung = |d: &Datum| d.imposed.is_none() && (d.is_unloading() || d.motion.is_some());
+        if !context.data.iter().any(is_hung) {
+            return Vec::new();
+        }
+        of_axes(context.data, Part::Pulley, &|location, scope| {
+            let share = parameter("fraction", 0.0, PULLEY, (0.0, MOST_OF_LOAD));
+            entry(&PULLEY_FRICTION, location, share, Action::PulleyFriction(scope))
+        })
+    },
+    missing: |_| "no load was taken off again: it would be the stiffness",
+    observed: |finding, _| {
+        format!(
+            "About {} of {} does not reach the rod while loading, and as much remains on it while unloading",
+            number(finding, "fraction").map(|share| 100.0 * share).with_unit("%"),
+            each_load(finding)
+        )
     },
     write: out_of_the_readings,
 };

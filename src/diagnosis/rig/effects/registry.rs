@@ -7,8 +7,9 @@ use crate::inference::{Effect, Term, WrittenTo};
 use crate::rod::Rod;
 
 /// Every effect that the diagnosis of a rig knows.
-pub static ALL: [&RigEffect; 22] = [
+pub static ALL: [&RigEffect; 23] = [
     &load::FRICTION,
+    &load::PULLEY_FRICTION,
     &load::LOAD_OFFSET,
     &load::BACKLASH,
     &structure::STIFFNESS_SCALE,

@@ -14,6 +14,8 @@ use crate::spatial::Axis;
 pub enum Action {
     /// Friction of the slide under these loads, N \[0\].
     Friction(Scope),
+    /// Friction of the pulleys of these loads, as a share of each \[0\].
+    PulleyFriction(Scope),
     /// Travel over which friction turns round, m \[0\].
     Presliding,
     /// Play of the slider that rubs, on either side, m \[that of the form\].
@@ -144,6 +146,7 @@ impl Action {
             Action::Display(display) => Some(Addition::Display(display)),
             Action::Own(law, number) => Some(Addition::Own(law, *number)),
             Action::Friction(_)
+            | Action::PulleyFriction(_)
             | Action::Presliding
             | Action::SliderPlay
             | Action::LoadOffset(_)
@@ -173,6 +176,7 @@ impl Action {
             Action::Onset(_) | Action::Presliding | Action::SliderPlay => true,
             Action::Own(_, number) => *number > 0,
             Action::Friction(_)
+            | Action::PulleyFriction(_)
             | Action::LoadOffset(_)
             | Action::TurnLoad(..)
             | Action::Stiffness

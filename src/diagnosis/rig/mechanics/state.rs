@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! load       F = m·d    m = nominal + offset, less friction on the way up (not below zero), more on the way down
-//!                       (not more than was felt at the turn)
+//!                       (not more than was felt at the turn); friction f + μ·(nominal + offset)
 //!                       d = nominal direction, turned
 //! structure  u = C·d·(m·(1 + k₂m²)(1 + k₁|m|)Π(1 + v·w) + Σ v·W)     C by the structure; w, W by the history of loads
 //! reading    y = s·e·(u + play·d) + shifts                            e = channel, turned; s its scale
@@ -46,6 +46,8 @@ impl Scoped {
 /// A rig with all that is wrong with it.
 pub struct State<'a> {
     friction: Scoped,
+    /// Share of each load.
+    pulley_friction: Scoped,
     presliding: f64,
     slider_play: f64,
     load_offset: Scoped,
@@ -87,6 +89,7 @@ impl Default for State<'_> {
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
         State {
             friction: Scoped::default(),
+            pulley_friction: Scoped::default(),
             presliding: 0.0,
             slider_play: 0.0,
             load_offset: Scoped::default(),
@@ -123,6 +126,7 @@ impl<'a> State<'a> {
         self.is_changed |= !action.only_adds() && !matches!(action, Action::Own(..) | Action::Display(_));
         match action {
             Action::Friction(scope) => self.friction.0.push((*scope, value)),
+            Action::PulleyFriction(scope) => self.pulley_friction.0.push((*scope, value)),
             Action::Presliding => self.presliding += value,
             Action::SliderPlay => self.slider_play += value,
             Action::LoadOffset(scope) => self.load_offset.0.push((*scope, value)),
@@ -174,7 +178,8 @@ impl<'a> State<'a> {
             for instant in run {
                 let first = &data[instant[0]];
                 let sign = f64::from(first.direction.sign);
-                hung = hung.next(sign * self.hanging(first), self.friction.on(first));
+                let hanging = self.hanging(first);
+                hung = hung.next(sign * hanging, self.friction_under(first, hanging));
                 for &i in instant {
                     pulls[i] = self.pull(i, &data[i], Some(hung));
                 }
@@ -219,6 +224,11 @@ impl<'a> State<'a> {
         if datum.load > 0.0 { datum.load + self.load_offset.on(datum) } else { 0.0 }
     }
 
+    /// What resists where so much hangs, N: f + μ·m.
+    fn friction_under(&self, datum: &Datum, hanging: f64) -> f64 {
+        self.friction.on(datum) + self.pulley_friction.on(datum) * hanging.abs()
+    }
+
     /// Of one datum; `hung` where its course is known.
     fn pull(&self, index: usize, datum: &Datum, hung: Option<Hung>) -> Pull {
         let bare = self.bare(datum, hung);
@@ -239,12 +249,14 @@ impl<'a> State<'a> {
     /// Of one datum, without history.
     pub fn bare(&self, datum: &Datum, hung: Option<Hung>) -> Pull {
         let (axis, sign) = (datum.direction.axis.index(), f64::from(datum.direction.sign));
-        let (hanging, friction) = (self.hanging(datum), self.friction.on(datum));
+        let hanging = self.hanging(datum);
+        let friction = self.friction_under(datum, hanging);
         let acting = match hung {
             Some(hung) => sign * hung.force,
             // a slide that turns round holds no more than was felt before
             None if datum.is_unloading() => {
-                let felt = (datum.peak + self.load_offset.on(datum) - friction).max(0.0);
+                let peak = datum.peak + self.load_offset.on(datum);
+                let felt = (peak - self.friction_under(datum, peak)).max(0.0);
                 (hanging + friction).min(felt)
             }
             // a slide that holds the whole load leaves nothing, and turns nothing round

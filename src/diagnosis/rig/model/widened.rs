@@ -62,6 +62,7 @@ impl RigModel {
                 Body::Lines(_) => None,
             },
             Action::Friction(_)
+            | Action::PulleyFriction(_)
             | Action::Presliding
             | Action::SliderPlay
             | Action::LoadOffset(_)

@@ -3,7 +3,8 @@
 use approx::assert_relative_eq;
 
 use super::*;
-use crate::units::DEG;
+use crate::statistics::Random;
+use crate::units::{DEG, UM};
 
 #[test]
 fn effects_on_the_load_have_the_sign_and_size_of_a_hand_computation() {
@@ -21,6 +22,12 @@ fn effects_on_the_load_have_the_sign_and_size_of_a_hand_computation() {
     let read_again = RigModel::new(&readings(&again), Some(&rod)).unwrap().0;
     let held = one(&read_again, "friction", "slide", 1.0, Axis::Y);
     assert_all(&held, &[y, y, y, 0.0, -y, -y]);
+    // a pulley that takes a tenth, a half, or four fifths of each load
+    let pulley = |share| one(&model, "pulley_friction", "pulley", share, Axis::Y);
+    assert_all(&pulley(0.1), &[0.5 * y, 2.0 * y, -0.5 * y, 0.0]);
+    assert_all(&pulley(0.5), &[2.5 * y, 10.0 * y, -2.5 * y, 0.0]);
+    // 4 N are felt at the turn, less than what remains of 5 N
+    assert_all(&pulley(0.8), &[4.0 * y, 16.0 * y, y, 0.0]);
     assert_all(&one(&model, "load_offset", "hanger", 2.0, Axis::Y), &[-2.0 * y, -2.0 * y, -2.0 * y, 0.0]);
     let (sin, cos) = (2.0 * DEG).sin_cos();
     let turned = |load: f64| -load * sin * c[(2, 2)];
@@ -28,4 +35,88 @@ fn effects_on_the_load_have_the_sign_and_size_of_a_hand_computation() {
     assert_all(&z, &[turned(5.0), turned(20.0), turned(5.0), 0.0]);
     let along = one(&model, "load_misalignment", "y towards z", 2.0 * DEG, Axis::Y);
     assert_relative_eq!(along[1], -20.0 * y * (cos - 1.0), max_relative = 1e-9);
+}
+
+/// Three runs up and down along y and z of the file's rod, which feels so much of each load, N.
+fn up_and_down(seed: u64, felt: &dyn Fn(Axis, f64, bool) -> f64) -> Readings {
+    let (c, mut random) = (compliance(&rod("")), Random::seeded(seed, 0));
+    let mut text = "trial,axis,load_n,phase,dx_um,dy_um,dz_um\n".to_owned();
+    for (trial, axis) in (1..=3).flat_map(|trial| [Axis::Y, Axis::Z].map(|axis| (trial, axis))) {
+        for (k, load) in [3.0, 6.0, 9.0, 12.0, 15.0, 12.0, 9.0, 6.0, 3.0].into_iter().enumerate() {
+            let phase = if k < 5 { "load" } else { "unload" };
+            let bent = c.column(axis.index()) * felt(axis, load, k >= 5) / UM;
+            let [x, y, z] = [0, 1, 2].map(|channel| bent[channel] + random.normal());
+            text += &format!("{trial},{axis},{load},{phase},{x:.1},{y:.1},{z:.1}\n");
+        }
+    }
+    readings(&text)
+}
+
+/// The findings of a recording, with the first number of the first.
+fn found(recorded: &Readings) -> (Vec<(&'static str, String)>, [f64; 3]) {
+    let found = diagnose(recorded, Some(&rod(""))).unwrap();
+    let named = |own: &crate::inference::Finding| (own.effect.name, own.location.to_string());
+    let number = found.diagnosis.findings.first().map(|own| &own.estimates[0]);
+    let number = number.map_or([f64::NAN; 3], |own| [own.low, own.value, own.high]);
+    (found.diagnosis.findings.iter().map(named).collect(), number)
+}
+
+/// Loads over a pulley lose a share of each, those that hang straight down none; a slide's friction
+/// stays one.
+#[test]
+fn friction_of_a_pulley_is_a_share_of_each_load_and_that_of_a_slide_is_not() {
+    let turned =
+        |load: f64, share: f64, down: bool| if down { load * (1.0 + share) } else { load * (1.0 - share) };
+    for seed in [1, 2, 3, 4] {
+        let share = [0.02, 0.05][seed as usize % 2];
+        let over_pulley = |axis, load: f64, down| {
+            if axis == Axis::Y { turned(load, share, down).min(15.0 * (1.0 - share)) } else { load }
+        };
+        let (names, [low, value, high]) = found(&up_and_down(seed, &over_pulley));
+        assert_eq!(names, [("pulley_friction", "pulley, loads along y".into())], "{seed}");
+        assert!(low < share && share < high && (value - share).abs() < 0.003, "{seed}: {low} … {high}");
+        let in_slide = |_, load: f64, down| if down { (load + 0.4).min(14.6) } else { load - 0.4 };
+        let (names, [low, _, high]) = found(&up_and_down(seed, &in_slide));
+        assert_eq!(names, [("friction", "slide".into())], "{seed}");
+        assert!(low < 0.4 && 0.4 < high, "{seed}: {low} … {high}");
+        assert_eq!(found(&up_and_down(seed, &|_, load, _| load)).0, [], "{seed}");
+    }
+}
+
+/// Without a way down it would be the stiffness, and is not looked for.
+#[test]
+fn a_pulley_needs_loads_that_are_taken_off() {
+    let model = model("axis,load_n,dy_um\ny,5,230\ny,10,460\n", &rod(""));
+    assert!(model.candidates().iter().all(|own| own.effect.name != "pulley_friction"));
+}
+
+/// A load that pulls aside by the third power of its size: in runs through the same loads the time
+/// comes round with the load.
+#[test]
+fn what_repeats_with_the_loads_follows_these_and_not_the_time() {
+    let c = compliance(&rod(""));
+    for seed in [1, 2, 3] {
+        for axes in [&[Axis::Z][..], &[Axis::Y, Axis::Z]] {
+            let mut random = Random::seeded(seed, 0);
+            let mut text = "trial,axis,load_n,time_s,dx_um,dy_um,dz_um\n".to_owned();
+            let mut time = 0.0;
+            for (trial, &axis) in (1..=4).flat_map(|trial| axes.iter().map(move |axis| (trial, axis))) {
+                time += 300.0;
+                for load in (1..=8).map(|k| 2.0 * f64::from(k)) {
+                    time += 60.0 * random.uniform(0.8, 1.3);
+                    let aside = 0.1 * load.powi(3) / 256.0 * c[(axis.index(), axis.index())] / UM;
+                    let read = [0, 1, 2].map(|channel| {
+                        let own = if channel == axis.index() { 0.0 } else { aside };
+                        c[(channel, axis.index())] * load / UM + own + 2.0 * random.normal()
+                    });
+                    let [x, y, z] = read;
+                    text += &format!("{trial},{axis},{load},{time:.0},{x:.1},{y:.1},{z:.1}\n");
+                }
+            }
+            let found = diagnose(&readings(&text), Some(&rod(""))).unwrap();
+            let curve = found.diagnosis.discrepancy.and_then(|left| left.location);
+            let said = curve.map_or_else(String::new, |location| location.to_string());
+            assert!(said.starts_with("load, all sensors under"), "{seed} {axes:?}: {said}");
+        }
+    }
 }

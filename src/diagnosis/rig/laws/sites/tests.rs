@@ -61,12 +61,13 @@ fn up_and_down_with(header: &str, read: impl Fn(&str, f64) -> String) -> (Readin
 }
 
 /// What the effects of the library are in the grammar.
-const POINTS: [(&str, &str, &str, Form, bool); 19] = [
+const POINTS: [(&str, &str, &str, Form, bool); 20] = [
     ("stiffness_scale", "rod", "load", Form::Polynomial(1), false),
     ("nonlinear_stiffness", "rod", "load", Form::Polynomial(2), false),
     ("nonlinear_stiffness", "rod", "load", Form::Polynomial(3), false),
     ("load_offset", "rod", "load", Form::Step, false),
     ("friction", "rod", "load", Form::Step, true),
+    ("pulley_friction", "rod", "load", Form::Polynomial(1), true),
     ("hysteresis", "rod", "load", Form::Polynomial(2), true),
     ("sensor_lag", "slide", "time since the load was changed", Form::Polynomial(1), false),
     ("backlash", "clamp", "load", Form::Step, false),

@@ -71,21 +71,24 @@ fn are_at_once(evidence: &Evidence, suspects: &[Suspect]) -> bool {
     moments.values().any(|&(count, far)| far > 1 && far == count)
 }
 
-/// True where all repeats of a reading are far off to one side, three at least, or two where they
-/// are half of all that is far off: what repeats agree on is no mistake of one of them.
+/// True where all repeats of a reading are as far off, three at least, or two where they are half
+/// of all that is far off: what repeats agree on is no mistake of one of them.
 fn are_repeats(evidence: &Evidence, suspects: &[Suspect]) -> bool {
     const SURE: usize = 3;
-    // how many, and how many of them are far off to either side
-    let mut groups: BTreeMap<usize, (usize, [usize; 2])> = BTreeMap::new();
+    // none of them is farther off than so many times the nearest
+    const AS_FAR: f64 = 2.0;
+    let mut groups: BTreeMap<usize, (usize, Vec<f64>)> = BTreeMap::new();
     for &group in evidence.replicate_group.iter().take(evidence.recorded) {
         groups.entry(group).or_default().0 += 1;
     }
     for suspect in suspects {
         if let Some(&group) = evidence.replicate_group.get(suspect.datum) {
-            groups.entry(group).or_default().1[usize::from(suspect.sigma > 0.0)] += 1;
+            groups.entry(group).or_default().1.push(suspect.sigma);
         }
     }
-    let whole = || groups.values().filter(|(count, far)| *count > 1 && far.contains(count));
+    let agree =
+        |far: &[f64]| far.iter().all(|a| far.iter().all(|b| a * b > 0.0 && a.abs() < AS_FAR * b.abs()));
+    let whole = || groups.values().filter(|(count, far)| *count > 1 && far.len() == *count && agree(far));
     let in_whole: usize = whole().map(|(count, _)| count).sum();
     whole().any(|(count, _)| *count >= SURE) || (in_whole > 0 && 2 * in_whole >= suspects.len())
 }
@@ -164,6 +167,8 @@ mod tests {
         };
         assert!(far(&[(7, 5.0), (47, 6.0), (87, 5.0)], 3));
         assert!(!far(&[(7, 5.0), (47, -6.0), (87, 5.0)], 3) && !far(&[(7, 5.0), (47, 6.0), (90, 5.0)], 3));
+        // nor are they where one is much farther off
+        assert!(!far(&[(7, 5.0), (47, 6.0), (87, 15.0)], 3) && !far(&[(7, 5.0), (67, 15.0)], 2));
         // two may be chance, unless they are all, or half
         assert!(far(&[(7, 5.0), (67, 6.0)], 2));
         assert!(far(&[(7, 5.0), (67, 6.0), (20, 5.0), (90, 5.0)], 2));

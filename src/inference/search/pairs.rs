@@ -5,10 +5,15 @@
 //! hypothesis so far explains taken out:
 //!
 //! ```text
-//! gain ≈ −½·ν·ln(1 − Δ/νσ²) − ½·ln|1 + G/s|     Δ = bᵀ(G + s)⁻¹b, s what is then left of σ²
+//! gain ≈ −½·ν·ln(1 − Δ/q) − ½·ln|1 + G/s|     Δ = bᵀ(G + s)⁻¹b, s what is then left of σ²
 //! ```
 //!
+//! q is all that is left, ‖r‖², which is νσ² but where tails are heavy: ν counts what the data say
+//! as normal ones, and with νσ² two effects of which each explains most would explain all.
+//!
 //! and only the best are fitted.
+
+use std::collections::BTreeSet;
 
 use nalgebra::allocator::Allocator;
 use nalgebra::{Cholesky, DMatrix, DVector, DefaultAllocator, Dim, OMatrix, OVector, SMatrix, SVector};
@@ -94,17 +99,21 @@ impl Search<'_> {
             next = end;
         }
         let s = hypothesis.sigma.powi(2);
+        let mut all = residual.norm_squared();
         if base.ncols() > 0 {
             let mut ridge = transposed_product(&base, &base);
             (0..ridge.ncols()).for_each(|k| ridge[(k, k)] += s);
             if let Some(root) = Cholesky::new(ridge) {
                 let solved = root.solve(&cross);
                 gram -= transposed_product(&cross, &solved);
-                product -= solved.tr_mul(&base.tr_mul(&residual));
+                let along = base.tr_mul(&residual);
+                product -= solved.tr_mul(&along);
+                all -= along.dot(&root.solve(&along));
             }
         }
         let nu = (self.informative() as f64).max(1.0);
-        let gain = |columns: &[usize]| gain(&gram, &product, columns, s, nu);
+        let noise = Noise { variance: s, all: all.max(nu * s), informative: nu };
+        let gain = |columns: &[usize]| gain(&gram, &product, columns, noise);
         let own = |k: usize| -> Vec<usize> { (starts[k]..starts[k] + counts[k]).collect() };
         let alone: Vec<f64> = (0..paired.len()).map(|k| gain(&own(k))).collect();
         let mut gains: Vec<(f64, usize, usize)> = Vec::new();
@@ -124,21 +133,49 @@ impl Search<'_> {
             }
         }
         gains.sort_by(|a, b| b.0.total_cmp(&a.0));
-        gains.into_iter().take(REFITTED).map(|(_, first, second)| (first, second)).collect()
+        let effects = |(_, first, second): &(f64, usize, usize)| {
+            let [a, b] = [first, second].map(|index| candidates[*index].effect.name);
+            if a < b { (a, b) } else { (b, a) }
+        };
+        varied(&gains, effects).into_iter().map(|(_, first, second)| (first, second)).collect()
     }
+}
+
+/// So many pairs of a list, the best first: half of them whatever they are, then the best of each
+/// other kind, lest a law of many forms leaves no place for others; and the best of the rest.
+fn varied<T: Copy, K: Ord>(all: &[T], kind: impl Fn(&T) -> K) -> Vec<T> {
+    let mut known = BTreeSet::new();
+    let mut ranked: Vec<(bool, usize)> = Vec::new();
+    for (rank, one) in all.iter().enumerate() {
+        let is_new = known.insert(kind(one));
+        ranked.push((rank >= REFITTED / 2 && !is_new, rank));
+    }
+    ranked.sort_unstable();
+    ranked.into_iter().take(REFITTED).map(|(_, rank)| all[rank]).collect()
+}
+
+/// What a hypothesis leaves.
+#[derive(Clone, Copy)]
+struct Noise {
+    /// σ².
+    variance: f64,
+    /// q.
+    all: f64,
+    /// ν.
+    informative: f64,
 }
 
 /// About what some columns of a whole are worth. Of the few numbers of two effects no matrices are
 /// made.
-fn gain(gram: &DMatrix<f64>, product: &DVector<f64>, columns: &[usize], noise: f64, nu: f64) -> f64 {
+fn gain(gram: &DMatrix<f64>, product: &DVector<f64>, columns: &[usize], noise: Noise) -> f64 {
     match columns.len() {
-        1 => gain_of::<1>(gram, product, columns, noise, nu),
-        2 => gain_of::<2>(gram, product, columns, noise, nu),
-        3 => gain_of::<3>(gram, product, columns, noise, nu),
-        4 => gain_of::<4>(gram, product, columns, noise, nu),
+        1 => gain_of::<1>(gram, product, columns, noise),
+        2 => gain_of::<2>(gram, product, columns, noise),
+        3 => gain_of::<3>(gram, product, columns, noise),
+        4 => gain_of::<4>(gram, product, columns, noise),
         k => {
             let own = DMatrix::from_fn(k, k, |i, j| gram[(columns[i], columns[j])]);
-            worth(own, DVector::from_fn(k, |i, _| product[columns[i]]), noise, nu)
+            worth(own, DVector::from_fn(k, |i, _| product[columns[i]]), noise)
         }
     }
 }
@@ -147,30 +184,67 @@ fn gain_of<const K: usize>(
     gram: &DMatrix<f64>,
     product: &DVector<f64>,
     columns: &[usize],
-    noise: f64,
-    nu: f64,
+    noise: Noise,
 ) -> f64 {
     let own = SMatrix::<f64, K, K>::from_fn(|i, j| gram[(columns[i], columns[j])]);
-    worth(own, SVector::<f64, K>::from_fn(|i, _| product[columns[i]]), noise, nu)
+    worth(own, SVector::<f64, K>::from_fn(|i, _| product[columns[i]]), noise)
 }
 
-fn worth<D: Dim>(own: OMatrix<f64, D, D>, b: OVector<f64, D>, noise: f64, nu: f64) -> f64
+fn worth<D: Dim>(own: OMatrix<f64, D, D>, b: OVector<f64, D>, noise: Noise) -> f64
 where
     DefaultAllocator: Allocator<D> + Allocator<D, D>,
 {
-    let mut left = noise;
+    let mut left = noise.variance;
     let mut last = None;
     for _ in 0..3 {
         let mut ridge = own.clone();
         (0..b.len()).for_each(|i| ridge[(i, i)] += left + 1e-9 * own[(i, i)]);
         let Some(root) = Cholesky::new(ridge) else { return f64::NEG_INFINITY };
-        let explained = (b.dot(&root.solve(&b)) / (nu * noise)).clamp(0.0, 1.0 - 1e-9);
+        let explained = (b.dot(&root.solve(&b)) / noise.all).clamp(0.0, 1.0 - 1e-9);
         last = Some((root, explained, left));
-        left = (noise * (1.0 - explained)).max(f64::MIN_POSITIVE);
+        left = (noise.variance * (1.0 - explained)).max(f64::MIN_POSITIVE);
     }
     last.map_or(f64::NEG_INFINITY, |(root, explained, left)| {
         let lower = root.l_dirty();
         let determinant: f64 = (0..b.len()).map(|i| (lower[(i, i)] * lower[(i, i)] / left).ln()).sum();
-        -0.5 * (nu * (-explained).ln_1p() + determinant)
+        -0.5 * (noise.informative * (-explained).ln_1p() + determinant)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where the tails are heavy νσ² is less than is left: two columns of which each explains nine
+    /// tenths would then explain more than all, as the right two do.
+    #[test]
+    fn no_pair_explains_more_than_there_is() {
+        let wave = |k: usize| (0..60).map(move |row| (0.1 * k as f64 * row as f64).sin());
+        let columns = DMatrix::from_iterator(60, 4, (1..=4).flat_map(wave));
+        let mut random = crate::statistics::Random::seeded(1, 0);
+        let scatter = DVector::from_fn(60, |_, _| 0.1 * random.normal());
+        let residual = 8.0 * columns.column(0) + 2.5 * columns.column(1) + scatter;
+        let (gram, product) = (columns.tr_mul(&columns), columns.tr_mul(&residual));
+        let all = residual.norm_squared();
+        let noise = Noise { variance: 0.6 * all / 60.0, all, informative: 60.0 };
+        let gain = |columns: &[usize]| gain(&gram, &product, columns, noise);
+        assert!(gain(&[0, 1]) > gain(&[0, 2]) + 10.0 && gain(&[0, 1]) > gain(&[0, 3]) + 10.0);
+        let of_all = Noise { all: 0.6 * all, ..noise };
+        let cap = |columns: &[usize]| super::gain(&gram, &product, columns, of_all);
+        let [right, other] = [cap(&[0, 1]), cap(&[0, 2])];
+        assert!((right - other).abs() < 3.0 && right > 300.0, "{right} {other}: both would explain all");
+    }
+
+    #[test]
+    fn a_law_of_many_forms_leaves_places_for_others() {
+        // thirty forms of one pair, then each of four others twice
+        let all: Vec<(u32, char)> = (0..30)
+            .map(|k| (k, 'a'))
+            .chain((30..38).map(|k| (k, ['b', 'c', 'd', 'e'][k as usize % 4])))
+            .collect();
+        let varied = varied(&all, |one| one.1);
+        let expected: Vec<u32> = (0..8).chain(30..34).chain(8..12).collect();
+        assert_eq!(varied.iter().map(|one| one.0).collect::<Vec<_>>(), expected);
+        assert_eq!(super::varied(&all[..3], |one| one.1), all[..3]);
+    }
 }

@@ -28,6 +28,8 @@ use crate::units::{STANDARD_GRAVITY, significant};
 const FAR: f64 = 0.1;
 /// How near a load must come to a number that it may be, as a share.
 const NEAR: f64 = 0.02;
+/// By which share the other rows of a run may be off all together.
+const RIGHT: f64 = 0.2;
 /// By how much a load that has only one of the two reasons, the digits and another row, is less
 /// likely than one of both (the logarithm of odds).
 const ONE_REASON: f64 = 3.0;
@@ -45,9 +47,43 @@ pub(super) struct Entry {
     pub load: Option<f64>,
 }
 
-/// Loads of single rows that all their readings contradict.
+/// Loads of single rows that all their readings contradict: channels that show loads by themselves,
+/// or, of one row, several together.
 pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Entry> {
     let known = ShownLoads::of(data, lines);
+    let by_themselves = contradicted(&known, unit, |shown| shown.against);
+    if !by_themselves.is_empty() {
+        return by_themselves;
+    }
+    let mut together = contradicted(&known, unit, |shown| shown.against_together);
+    if together.len() > 1 {
+        return Vec::new();
+    }
+    together.retain(|one| is_beside_right_loads(&known, one));
+    together
+}
+
+/// True where the other rows of its run show their loads: a run in another unit does not.
+fn is_beside_right_loads(known: &ShownLoads, wrong: &Entry) -> bool {
+    let Some(wrong) = wrong.part.data.first().map(|&i| &known.data[i]) else { return false };
+    let (mut top, mut bottom) = (0.0, 0.0);
+    for (own, shown) in known.all() {
+        let datum = &known.data[own[0]];
+        if datum.run == wrong.run && datum.order != wrong.order {
+            let weight = shown.error.powi(-2);
+            top += weight * shown.load * datum.signed_load();
+            bottom += weight * datum.load.powi(2);
+        }
+    }
+    (top / bottom - 1.0).abs() < RIGHT
+}
+
+fn contradicted(
+    known: &ShownLoads,
+    unit: LoadColumn,
+    against: impl Fn(&LoadByReadings) -> [f64; 2],
+) -> Vec<Entry> {
+    let data = known.data;
     let levels: Vec<f64> = data.iter().map(|datum| datum.load).collect();
     let usual = median(&levels).unwrap_or(0.0);
     let in_file = in_file(unit);
@@ -86,16 +122,17 @@ pub(super) fn found(data: &[Datum], lines: &[Line], unit: LoadColumn) -> Vec<Ent
         };
         let error = shown.error.max(NEAR * along.abs() / AGREE);
         let meant = meant(datum.load, &levels, in_file, (along, error));
-        let is_alone = shown.against[1] < AGREE;
+        let against = against(shown);
+        let is_alone = against[1] < AGREE;
         let is_known = !is_elsewhere(datum.load) && meant.is_some_and(is_elsewhere);
         if is_alone && !is_known && !is_exchanged(own, shown.load) {
             continue;
         }
-        if shown.against[0] < if is_known { AGREE } else { SCATTERS } {
+        if against[0] < if is_known { AGREE } else { SCATTERS } {
             continue;
         }
         found.push(entry(data, own, unit, shown, meant, apart * known.most_slope(own)));
-        as_others.push(is_as_others(&known, own, apart));
+        as_others.push(is_as_others(known, own, apart));
     }
     few(data, &known.instants, found, &as_others)
 }

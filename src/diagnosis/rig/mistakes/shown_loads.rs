@@ -28,8 +28,11 @@ pub(super) struct LoadByReadings {
     /// N, with its standard error.
     pub load: f64,
     pub error: f64,
-    /// How far those are off the load in the file that contradict it most, in scatters.
+    /// How far those are off the load in the file that contradict it most, in scatters: of those
+    /// that show loads by themselves.
     pub against: [f64; 2],
+    /// The same of those that show it together.
+    pub against_together: [f64; 2],
     /// How far the reading that agrees the least is off it, in scatters.
     pub off: f64,
 }
@@ -91,14 +94,18 @@ impl<'a> ShownLoads<'a> {
         };
         let in_file = known.first().map(|(datum, _)| datum.signed_load())?;
         let all = known.iter().map(|(_, line)| in_scatters(line, in_file).powi(2)).sum::<f64>().sqrt();
-        let shows = |line: &Line| in_scatters(line, in_file) > SCATTERS && all > 2.0 * SCATTERS;
-        let showing = known.iter().filter(|(_, line)| shows(line));
-        let mut against: Vec<f64> = showing.map(|one| off(in_file, one)).chain([0.0; 2]).collect();
-        against.sort_by(|a, b| b.total_cmp(a));
+        let most = |least: f64| {
+            let showing = known.iter().filter(|(_, line)| in_scatters(line, in_file) > least);
+            let mut against: Vec<f64> = showing.map(|one| off(in_file, one)).chain([0.0; 2]).collect();
+            against.sort_by(|a, b| b.total_cmp(a));
+            [against[0], against[1]]
+        };
+        let together = if all > 2.0 * SCATTERS { SCATTERS } else { f64::INFINITY };
         load.is_finite().then(|| LoadByReadings {
             load,
             error: bottom.powf(-0.5),
-            against: [against[0], against[1]],
+            against: most(2.0 * SCATTERS),
+            against_together: most(together),
             off: known.iter().map(|one| off(load, one)).fold(0.0, f64::max),
         })
     }

@@ -60,8 +60,11 @@ fn a_weight_that_is_another_one_is_named_and_left_out() {
     cases.check();
 }
 
+/// How much of a load arrives at the rod in a trial, N.
+type Arrives<'a> = &'a dyn Fn(f64, u32) -> f64;
+
 /// What a line of slope 40 µm/N reads where each load and trial arrives as `arrives` says.
-fn named(arrives: &dyn Fn(f64, u32) -> f64, seed: u64) -> Vec<String> {
+fn named(arrives: Arrives, seed: u64) -> Vec<String> {
     let mut random = Random::seeded(seed, 0);
     let mut text = "axis,load_n,trial,dy_um,dz_um\n".to_owned();
     for (trial, load) in (1..=3).flat_map(|trial| LOADS.map(|load| (trial, load))) {
@@ -74,7 +77,7 @@ fn named(arrives: &dyn Fn(f64, u32) -> f64, seed: u64) -> Vec<String> {
 
 #[test]
 fn curves_steps_ends_and_single_runs_are_no_weights() {
-    let none: [(&str, &dyn Fn(f64, u32) -> f64); 8] = [
+    let none: [(&str, Arrives); 8] = [
         ("a stop", &|load, _| load + 0.2 * f64::max(load - 9.0, 0.0)),
         ("a gap", &|load, _| load + f64::min(load, 5.0) * 0.1),
         ("a step", &|load, _| if load > 9.0 { load - 0.5 } else { load }),

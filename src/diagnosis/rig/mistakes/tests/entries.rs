@@ -192,3 +192,20 @@ fn two_coarse_channels_correct_a_load_together() {
     let found = (0..SEEDS).filter(is_found).count();
     assert!(found > 9, "{found} of {SEEDS}");
 }
+
+/// A trial in pounds of which two coarse channels show one row: it is the trial, and no row.
+#[test]
+fn coarse_channels_correct_no_row_of_a_trial_in_another_unit() {
+    for seed in 0..10 {
+        let mut random = Random::seeded(seed, 0);
+        let mut text = "axis,load_n,trial,dx_um,dz_um\n".to_owned();
+        let rows = |trial| [1.0, 2.0, 3.0, 4.0, 5.0, 15.0].map(|load| (trial, load));
+        for (trial, load) in (1..=4).flat_map(rows) {
+            let [x, z] = [4.0, -8.0].map(|slope: f64| slope * (load + 0.9 * random.normal()));
+            let typed = if trial == 3 { load / POUND } else { load };
+            text += &format!("x,{typed},{trial},{x:.1},{z:.1}\n");
+        }
+        let named = found(&Readings::from_text("f", &text).unwrap(), None);
+        assert!(named.iter().all(|name| !name.starts_with("typing_mistake")), "{seed}: {named:?}");
+    }
+}

@@ -77,7 +77,7 @@ fn what_cannot_be_planned_is_refused() {
     let sandbox = Sandbox::new();
     for (line, expected) in [
         ("design rig rods/5.toml", "--between"),
-        ("design rig rods/5.toml --between gremlins", "one of friction, load_offset"),
+        ("design rig rods/5.toml --between gremlins", "one of friction, pulley_friction"),
         (
             "design rig rods/5.toml --between bend_flexibility",
             "a plan that shows bend_flexibility is not possible",

@@ -8,6 +8,8 @@
 pub const STANDARD_GRAVITY: f64 = 9.80665;
 /// A pound-force, N: 0.45359237 kg under [`STANDARD_GRAVITY`] (NIST SP 811, App. B.9).
 pub const POUND_FORCE: f64 = 4.448_221_615_260_5;
+/// The pound, kg.
+pub const POUND: f64 = 0.453_592_37;
 
 /// Millimetre in metres.
 pub const MM: f64 = 1e-3;

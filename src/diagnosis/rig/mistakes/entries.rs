@@ -16,13 +16,13 @@ use super::lines::Line;
 use super::part::Part;
 use super::possible::exact;
 use super::shown_loads::{AGREE, LoadByReadings, SCATTERS, ShownLoads};
-use crate::diagnosis::rig::recording::columns::{columns, load_column};
+use crate::diagnosis::rig::recording::columns::{columns, load_column, number_in_file, unit_of_loads};
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Estimate, Key};
 use crate::rig::readings::LoadColumn;
 use crate::spatial::Axis;
 use crate::statistics::median;
-use crate::units::{STANDARD_GRAVITY, significant};
+use crate::units::significant;
 
 /// A load is wrong that its readings are so far from, as a share of a usual one.
 const FAR: f64 = 0.1;
@@ -78,6 +78,7 @@ fn is_beside_right_loads(known: &ShownLoads, wrong: &Entry) -> bool {
     (top / bottom - 1.0).abs() < RIGHT
 }
 
+/// Loads that readings contradict, as far as `against` counts them.
 fn contradicted(
     known: &ShownLoads,
     unit: LoadColumn,
@@ -86,7 +87,7 @@ fn contradicted(
     let data = known.data;
     let levels: Vec<f64> = data.iter().map(|datum| datum.load).collect();
     let usual = median(&levels).unwrap_or(0.0);
-    let in_file = in_file(unit);
+    let (in_file, _) = unit_of_loads(unit);
     let shown = known.all();
     // the weights of two rows of a run hung in the wrong order: each shows the other one's load
     let is_exchanged = |own: &[usize], load: f64| {
@@ -148,13 +149,12 @@ fn entry(
 ) -> Entry {
     let datum = &data[own[0]];
     let (row, line) = (datum.row, datum.line);
-    let in_file = in_file(unit);
+    let (in_file, unit_name) = unit_of_loads(unit);
     let along = f64::from(datum.direction.sign) * shown.load;
     let half = 2.0 * shown.error;
-    let unit_name = if unit == LoadColumn::Newtons { "N" } else { "kg" };
-    let written = number(datum.load / in_file);
+    let written = number_in_file(datum.load / in_file);
     let is = match meant {
-        Some(meant) => number(meant / in_file),
+        Some(meant) => number_in_file(meant / in_file),
         None => format!("{} ± {}", significant(along / in_file, 3), significant(half / in_file, 1)),
     };
     let location = Key::new(load_column(unit)).rows(format!("row {row}"));
@@ -209,19 +209,6 @@ fn few(
     }
 }
 
-/// Newtons of what stands in the file.
-fn in_file(unit: LoadColumn) -> f64 {
-    match unit {
-        LoadColumn::Newtons => 1.0,
-        LoadColumn::Kilograms => STANDARD_GRAVITY,
-    }
-}
-
-/// As it stands in a file: without what conversions leave in the last digits.
-fn number(value: f64) -> String {
-    format!("{}", (value * 1e6).round() / 1e6)
-}
-
 /// True where other rows of the same load show what this one does: not half as far from it as its
 /// load is `apart` from the one in the file, N. Friction, play and curves do.
 fn is_as_others(known: &ShownLoads, own: &[usize], apart: f64) -> bool {
@@ -271,7 +258,7 @@ fn meant(written: f64, levels: &[f64], in_file: f64, (shown, error): (f64, f64))
 /// A number with its decimal point elsewhere, or two neighbouring digits exchanged.
 fn of_its_digits(written: f64) -> Vec<f64> {
     let mut found: Vec<f64> = [0.01, 0.1, 10.0, 100.0].map(|factor| factor * written).to_vec();
-    let digits: Vec<char> = number(written).chars().collect();
+    let digits: Vec<char> = number_in_file(written).chars().collect();
     for i in 1..digits.len() {
         let mut other = digits.clone();
         other.swap(i - 1, i);

@@ -9,20 +9,19 @@
 //! too, and the least and the largest load more than others (play, a stop): of these two nothing is
 //! said.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::effects::mistakes::WEIGHT_MISTAKE;
 use super::lines::{Line, fit};
 use super::part::Part;
 use super::shown_loads::{AGREE, LoadByReadings, SCATTERS, ShownLoads};
-use crate::diagnosis::rig::numbering::numbered;
-use crate::diagnosis::rig::recording::columns::{columns, load_column};
+use crate::diagnosis::rig::recording::columns::{columns, load_column, number_in_file, unit_of_loads};
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Estimate, Key};
 use crate::rig::readings::LoadColumn;
 use crate::spatial::Axis;
 use crate::statistics::HALF_95;
-use crate::units::{STANDARD_GRAVITY, with_uncertainty};
+use crate::units::with_uncertainty;
 
 /// So many loads show which one of them is off, and so many runs that it is so in each.
 const LEVELS: usize = 5;
@@ -85,45 +84,47 @@ fn levels(known: &ShownLoads) -> Vec<Level> {
             rows.entry(datum.load.to_bits()).or_default().push((own, shown));
         }
     }
-    let level = |(bits, rows): (u64, Vec<(&[usize], LoadByReadings)>)| {
-        let load = f64::from_bits(bits);
-        let of_row = |(own, shown): &(&[usize], LoadByReadings)| {
-            (f64::from(data[own[0]].direction.sign) * shown.load - load, shown.error)
-        };
-        let beyond: Vec<(f64, f64)> = rows.iter().map(of_row).collect();
-        let weight: f64 = beyond.iter().map(|(_, error)| error.powi(-2)).sum();
-        let all = beyond.iter().map(|(beyond, error)| beyond / error.powi(2)).sum::<f64>() / weight;
-        let chi = beyond.iter().map(|(beyond, error)| ((beyond - all) / error).powi(2)).sum::<f64>();
-        let more = (beyond.len() - 1).max(1) as f64;
-        let shows = |error: f64| AGREE * error < all.abs();
-        let is_like_all =
-            |(beyond, error): &(f64, f64)| (beyond - all).abs() < (ALIKE * all.abs()).max(AGREE * error);
-        let showing = || rows.iter().zip(&beyond).filter(|(_, (_, error))| shows(*error));
-        let runs = numbered(showing().map(|((own, _), _)| data[own[0]].run)).into_iter().max();
-        let axes = numbered(showing().map(|((own, _), _)| data[own[0]].direction.axis)).into_iter().max();
-        Level {
-            load,
-            beyond: all,
-            error: weight.powf(-0.5) * (chi / more).sqrt().max(1.0),
-            is_repeated: runs.is_some_and(|last| last + 1 >= RUNS) && beyond.iter().all(is_like_all),
-            data: rows.iter().flat_map(|(own, _)| own.iter().copied()).collect(),
-            is_shown_twice: axes > Some(0) || rows.iter().any(|(_, shown)| shown.against[1] > AGREE),
-        }
+    rows.into_iter().map(|(bits, rows)| level(data, f64::from_bits(bits), &rows)).collect()
+}
+
+/// What the rows of one load show together.
+fn level(data: &[Datum], load: f64, rows: &[(&[usize], LoadByReadings)]) -> Level {
+    let first = |own: &[usize]| &data[own[0]];
+    let of_row = |(own, shown): &(&[usize], LoadByReadings)| {
+        (f64::from(first(own).direction.sign) * shown.load - load, shown.error)
     };
-    rows.into_iter().map(level).collect()
+    let beyond: Vec<(f64, f64)> = rows.iter().map(of_row).collect();
+    let weight: f64 = beyond.iter().map(|(_, error)| error.powi(-2)).sum();
+    let all = beyond.iter().map(|(beyond, error)| beyond / error.powi(2)).sum::<f64>() / weight;
+    // they scatter by more than their errors where zeros differ from run to run
+    let chi = beyond.iter().map(|(beyond, error)| ((beyond - all) / error).powi(2)).sum::<f64>();
+    let scatter = (chi / (beyond.len() - 1).max(1) as f64).sqrt().max(1.0);
+    let is_like_all =
+        |(beyond, error): &(f64, f64)| (beyond - all).abs() < (ALIKE * all.abs()).max(AGREE * error);
+    let showing = || rows.iter().filter(|(_, shown)| AGREE * shown.error < all.abs());
+    let runs = different(showing().map(|(own, _)| first(own).run));
+    let axes = different(showing().map(|(own, _)| first(own).direction.axis));
+    Level {
+        load,
+        beyond: all,
+        error: weight.powf(-0.5) * scatter,
+        is_repeated: runs >= RUNS && beyond.iter().all(is_like_all),
+        data: rows.iter().flat_map(|(own, _)| own.iter().copied()).collect(),
+        is_shown_twice: axes > 1 || rows.iter().any(|(_, shown)| shown.against[1] > AGREE),
+    }
+}
+
+fn different<T: Ord>(all: impl Iterator<Item = T>) -> usize {
+    all.collect::<BTreeSet<T>>().len()
 }
 
 /// What is said of a weight; its rows are left out.
 fn part(known: &ShownLoads, wrong: &Level, unit: LoadColumn) -> Part {
     let data = known.data;
-    let (in_file, unit_name) = match unit {
-        LoadColumn::Newtons => (1.0, "N"),
-        LoadColumn::Kilograms => (STANDARD_GRAVITY, "kg"),
-    };
+    let (in_file, unit_name) = unit_of_loads(unit);
     let (is, half) = (wrong.load + wrong.beyond, HALF_95 * wrong.error);
-    let stated = format!("{} {unit_name}", (wrong.load / in_file * 1e6).round() / 1e6);
-    let rows =
-        numbered(wrong.data.iter().map(|&i| data[i].order)).into_iter().max().map_or(0, |last| last + 1);
+    let stated = format!("{} {unit_name}", number_in_file(wrong.load / in_file));
+    let rows = different(wrong.data.iter().map(|&i| data[i].order));
     // the channel that moves most
     let moves = |&i: &usize| known.line(i).map_or(0.0, |line| line.fit.slope.abs());
     let most = wrong.data.iter().max_by(|a, b| moves(a).total_cmp(&moves(b)));

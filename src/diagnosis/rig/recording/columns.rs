@@ -4,6 +4,7 @@ use super::datum::Datum;
 use crate::inference::Key;
 use crate::rig::readings::LoadColumn;
 use crate::spatial::Axis;
+use crate::units::STANDARD_GRAVITY;
 
 /// `dy_um`.
 pub fn column(channel: Axis) -> String {
@@ -22,6 +23,19 @@ pub fn load_column(column: LoadColumn) -> &'static str {
         LoadColumn::Newtons => "load_n",
         LoadColumn::Kilograms => "load_kg",
     }
+}
+
+/// Newtons of one of what stands in that column, and its symbol.
+pub fn unit_of_loads(column: LoadColumn) -> (f64, &'static str) {
+    match column {
+        LoadColumn::Newtons => (1.0, "N"),
+        LoadColumn::Kilograms => (STANDARD_GRAVITY, "kg"),
+    }
+}
+
+/// A number as it stands in a file: without what conversions leave in the last digits.
+pub fn number_in_file(value: f64) -> String {
+    format!("{}", (value * 1e6).round() / 1e6)
 }
 
 /// `axis y`.

@@ -10,7 +10,7 @@ use super::{Reading, UNUSUAL, exact};
 use crate::calibration::campaign::Campaign;
 use crate::robot::{Body, Robot};
 use crate::rod::Rod;
-use crate::units::{MM, POUND_FORCE, STANDARD_GRAVITY};
+use crate::units::{MM, POUND};
 
 /// Mass of the links over the third power of the reach, kg/m³.
 const USUAL_DENSITY: (f64, f64) = (2.0, 1000.0);
@@ -20,8 +20,7 @@ const FARTHEST: f64 = 1.5;
 const NEAR: f64 = 5.0;
 /// No ball and holder weighs more, kg.
 const MOST_AT_TIP: f64 = 20.0;
-/// Pound and ounce, kg.
-const POUND: f64 = POUND_FORCE / STANDARD_GRAVITY;
+/// Ounce, kg.
 const OUNCE: f64 = POUND / 16.0;
 
 /// A rod as its file may be meant, with what is said of it.

@@ -9,7 +9,7 @@ use crate::diagnosis::rig::recording::columns::{axis_rows, columns, load_column}
 use crate::inference::Key;
 use crate::rig::readings::LoadColumn;
 use crate::spatial::Axis;
-use crate::units::{POUND_FORCE, STANDARD_GRAVITY};
+use crate::units::{POUND, POUND_FORCE, STANDARD_GRAVITY};
 
 /// A unit that a column may have instead of its own.
 struct Unit {
@@ -47,9 +47,6 @@ pub const BESIDE: f64 = 1.25;
 const BESIDE_PHYSICS: f64 = 1.2;
 pub const HARDLY_BESIDE: f64 = 1.1;
 const VERY_NEAR: f64 = 1.05;
-
-/// kg, of an avoirdupois pound.
-const POUND: f64 = POUND_FORCE / STANDARD_GRAVITY;
 
 const fn unit(name: &'static str, factor: f64, log_prior: f64, cure: Cure) -> Unit {
     Unit { name, factor, log_prior, cure, or_else: None, within: BESIDE }

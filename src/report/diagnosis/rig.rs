@@ -287,7 +287,7 @@ fn of_conditions(found: &RigDiagnosis, left: &Discrepancy) -> Remainder {
              shape that neither a smooth curve nor an effect of the library describes"
         ),
         ShownBy::Suspects => format!(
-            "{} of {} readings are far off, too many or too close together for single mistakes, in a shape that neither a smooth \
+            "{} of {} readings are far off, too many, too close together or too alike for single mistakes, in a shape that neither a smooth \
              curve nor an effect of the library describes",
             found.diagnosis.suspects.len(),
             data.len()

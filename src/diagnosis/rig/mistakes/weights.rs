@@ -137,7 +137,7 @@ fn part(known: &ShownLoads, wrong: &Level, unit: LoadColumn) -> Part {
     Part {
         effect: &WEIGHT_MISTAKE,
         observed: format!(
-            "The weight of {stated} is {} {unit_name} by the readings of all its {rows} rows{or}: weigh it, and leave these rows out until then",
+            "The weight of {stated} is {} {unit_name} by the readings of all its {rows} rows{or}: leave these rows out until it is weighed",
             with_uncertainty(is / in_file, half / in_file, 4),
         ),
         looks_like: format!("the weight of {stated} looks like another one"),

@@ -463,3 +463,26 @@ fn numbers_far_from_those_of_the_file_are_no_agreement() {
         assert!((found.nominal[0].moved() - off).abs() < 0.5, "{}", found.nominal[0].moved());
     }
 }
+
+/// The noise that is stated draws σ to it, and νσ² is half of what is left: two effects that explain
+/// more than that would be as good as the two that explain all.
+#[test]
+fn no_pair_explains_more_than_there_is() {
+    let wave = |k: usize| move |x: f64| (std::f64::consts::PI * k as f64 * x).cos();
+    let mut model = Columns::new(COUNT);
+    model.add("main", "here", column(wave(1)), false);
+    model.add("beside", "here", column(wave(2)), false);
+    for (k, name) in (3..).zip(["a", "b", "c", "d", "e", "f"]) {
+        // half as like what is left beside the main one
+        model.add(name, "there", column(move |x| 0.1 * wave(2)(x) + 0.17 * wave(k)(x)), false);
+    }
+    let mut random = Random::seeded(3, 0);
+    let recorded = |row: usize| 8.0 * wave(1)(x(row)) + 8.0 * wave(2)(x(row)) + 0.2 * random.normal();
+    let mut evidence = independent((0..COUNT).map(recorded).collect());
+    evidence.stated_noise = Some(0.2);
+    let linear = Linearised::new(&model);
+    let search = Search::new(&linear, &evidence, &[]);
+    let none = search.fit(&[]);
+    let (first, second) = search.pairs(&none, &search.additions(&none))[0];
+    assert_eq!((first.min(second), first.max(second)), (0, 1));
+}

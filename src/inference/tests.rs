@@ -464,8 +464,8 @@ fn numbers_far_from_those_of_the_file_are_no_agreement() {
     }
 }
 
-/// The noise that is stated draws σ to it, and νσ² is half of what is left: two effects that explain
-/// more than that would be as good as the two that explain all.
+/// The noise that is stated draws σ to it, and νσ² is half of what is left: two effects that
+/// explain more than that would be as good as the two that explain all.
 #[test]
 fn no_pair_explains_more_than_there_is() {
     let wave = |k: usize| move |x: f64| (std::f64::consts::PI * k as f64 * x).cos();

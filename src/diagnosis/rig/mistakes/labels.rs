@@ -10,7 +10,7 @@ pub(super) use self::in_file::Labels;
 use self::signs::signs;
 use self::swaps::swaps;
 pub(super) use self::units::{BESIDE, HARDLY_BESIDE, of_loads};
-use self::units::{decimals, load_units, reading_units};
+use self::units::{decimals, decimals_of_axes, load_units, reading_units};
 pub(super) use self::unknown_unit::{BEYOND_A_ROD, unknown_units};
 pub use self::unknown_unit::{is_like_a_rod, is_unknown_unit};
 use super::possible::PossibleMistake;
@@ -19,6 +19,7 @@ use super::possible::PossibleMistake;
 pub(super) fn all(labels: &Labels) -> Vec<PossibleMistake> {
     let mut all = load_units(labels, false);
     all.extend(reading_units(labels));
+    all.extend(decimals_of_axes(labels));
     all.extend(signs(labels));
     all.extend(swaps(labels));
     all
@@ -29,6 +30,7 @@ pub(super) fn all(labels: &Labels) -> Vec<PossibleMistake> {
 pub(super) fn in_trials(labels: &Labels) -> Vec<PossibleMistake> {
     let mut all = load_units(labels, true);
     all.extend(reading_units(labels));
+    all.extend(decimals_of_axes(labels));
     all.extend(decimals(labels));
     all.extend(signs(labels));
     all.extend(swaps(labels));

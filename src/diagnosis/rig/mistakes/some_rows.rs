@@ -65,11 +65,16 @@ impl Mended {
             return Ok(());
         }
         let possible = labels::in_trials(&Labels::of(&all, self.readings.load_column));
-        for found in trials.found(&possible) {
+        for found in trials.found(&possible, self.readings.load_column) {
+            let Some(relabelling) = found.relabelling else {
+                self.leave_out(&data, &found.part);
+                self.add_part(found.part);
+                continue;
+            };
             let mut rows: Vec<usize> = found.part.data.iter().map(|&i| data[i].row - 1).collect();
             rows.sort_unstable();
             rows.dedup();
-            rows.into_iter().for_each(|row| found.relabelling.undo_in(&mut self.readings.rows[row]));
+            rows.into_iter().for_each(|row| relabelling.undo_in(&mut self.readings.rows[row]));
             self.add_part(found.part);
         }
         Ok(())

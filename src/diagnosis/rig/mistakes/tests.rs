@@ -4,6 +4,7 @@ mod entries;
 mod labels;
 mod named;
 mod parts;
+mod ratios;
 mod sensors;
 mod weights;
 

@@ -184,39 +184,26 @@ pub(super) fn reading_units(labels: &Labels) -> Vec<PossibleMistake> {
     found
 }
 
-/// A decimal point that slipped, or a display in another range.
+/// Decimal points that slipped, or displays in another range: ln of how usual each is.
+const DECIMALS: [(f64, f64, &str); 4] = [
+    (10.0, -1.0, "multiply them by 10"),
+    (0.1, -1.0, "divide them by 10"),
+    (100.0, -2.0, "multiply them by 100"),
+    (0.01, -2.0, "divide them by 100"),
+];
+
+/// A decimal point that slipped, or a display in another range, in all rows.
 pub(super) fn decimals(labels: &Labels) -> Vec<PossibleMistake> {
-    const DECIMALS: [(f64, f64, &str); 4] = [
-        (10.0, -1.0, "multiply them by 10"),
-        (0.1, -1.0, "divide them by 10"),
-        (100.0, -2.0, "multiply them by 100"),
-        (0.01, -2.0, "divide them by 100"),
-    ];
     let mut found = Vec::new();
     for (factor, log_prior, cure) in DECIMALS {
-        let size = if factor > 1.0 { "small" } else { "large" };
-        let times = if !(0.05..50.0).contains(&factor) { 100 } else { 10 };
-        let mut add = |location: Key, relabelling: Relabelling, whose: &str, log_prior: f64| {
-            found.push(PossibleMistake {
-                effect: &UNIT_MISTAKE,
-                looks_like: format!("{location} looks {times} times too {size}"),
-                observed: format!(
-                    "{whose} are {times} times too {size} (a decimal point, or another range): {cure}"
-                ),
-                or_else: None,
-                location,
-                relabelling,
-                log_prior,
-                estimates: vec![exact("factor", factor)],
-                within: HARDLY_BESIDE,
-            });
-        };
-        let (loads, of_all) = (Key::new(load_column(labels.load_column)), Relabelling::load(ALL, factor));
-        add(loads, of_all, "the loads", log_prior + UNUSUAL);
+        let loads = Key::new(load_column(labels.load_column));
+        let of_all = Relabelling::load(ALL, factor);
+        found.push(decimal(factor, cure, loads, of_all, "The loads", log_prior + UNUSUAL));
         let mut add_readings = |channels: &[Axis]| {
             let names = columns(channels);
             let relabelling = Relabelling::reading(ALL, mask(channels), factor);
-            add(Key::new(&names), relabelling, &format!("the readings {names}"), log_prior);
+            let whose = format!("The readings {names}");
+            found.push(decimal(factor, cure, Key::new(&names), relabelling, &whose, log_prior));
         };
         add_readings(&labels.channels);
         if labels.channels.len() > 1 {
@@ -224,4 +211,53 @@ pub(super) fn decimals(labels: &Labels) -> Vec<PossibleMistake> {
         }
     }
     found
+}
+
+/// The same under the loads of one axis: the others show what is right.
+pub(super) fn decimals_of_axes(labels: &Labels) -> Vec<PossibleMistake> {
+    if labels.axes.len() < 2 {
+        return Vec::new();
+    }
+    let names = labels.all_channels();
+    let of_axis = |&axis: &Axis| {
+        let of_factor = |&(factor, log_prior, cure): &(f64, f64, &str)| {
+            let [loads, readings] = [load_column(labels.load_column), &names]
+                .map(|columns| Key::new(columns).rows(axis_rows(axis)));
+            let of_loads = Relabelling::load(mask(&[axis]), factor);
+            let of_readings = Relabelling::reading(mask(&[axis]), mask(&labels.channels), factor);
+            let (loads_of, readings_of) =
+                (format!("The loads along {axis}"), format!("The readings under loads along {axis}"));
+            let rare = log_prior + ONE_AXIS;
+            // a channel that was read along its own axis alone is looked at as a channel
+            let of_readings =
+                labels.has_cross.then(|| decimal(factor, cure, readings, of_readings, &readings_of, rare));
+            let of_loads = decimal(factor, cure, loads, of_loads, &loads_of, rare + UNUSUAL);
+            std::iter::once(of_loads).chain(of_readings)
+        };
+        DECIMALS.iter().flat_map(of_factor).collect::<Vec<_>>()
+    };
+    labels.axes.iter().flat_map(of_axis).collect()
+}
+
+fn decimal(
+    factor: f64,
+    cure: &str,
+    location: Key,
+    relabelling: Relabelling,
+    whose: &str,
+    log_prior: f64,
+) -> PossibleMistake {
+    let size = if factor > 1.0 { "small" } else { "large" };
+    let times = if !(0.05..50.0).contains(&factor) { 100 } else { 10 };
+    PossibleMistake {
+        effect: &UNIT_MISTAKE,
+        looks_like: format!("{location} looks {times} times too {size}"),
+        observed: format!("{whose} are {times} times too {size} (a decimal point, or another range): {cure}"),
+        or_else: None,
+        location,
+        relabelling,
+        log_prior,
+        estimates: vec![exact("factor", factor)],
+        within: HARDLY_BESIDE,
+    }
 }

@@ -37,7 +37,7 @@ pub use calibrate_from::calibrate_from;
 pub use campaign::Campaign;
 pub use compare::{CompareOptions, Comparison, Difference, Draws, compare};
 pub use compensation::{Compensation, Mode, TORQUE_ROUNDS, default_mode, modes};
-pub(crate) use compensation::{by_own_weight, without_tip};
+pub(crate) use compensation::{Carried, by_own_weight, without_tip};
 pub use cross_validation::{CrossValidation, cross_validate, folds_of, predict_held_out};
 pub(crate) use drives::{SOFTEST, least_value, plausible_compliances};
 pub use extrapolation::Extrapolation;

@@ -5,18 +5,18 @@
 //! at the tip      R·C^F·Rᵀ·(m·g) + yield(tip, m·g)
 //! ```
 //!
-//! from some row on, m the mass after it less that before it. As a payload, what hangs at the
-//! flange has its centre there: one that might be anywhere would stand for whatever a payload that
-//! hangs there always leaves, being beside the flange, as a load put on after the first poses.
+//! from some row on, m the mass after it less that before it; at the flange with a centre of its
+//! own, as `payload.rs` has it.
 
 use std::ops::Range;
 
 use super::super::model::CalibrationModel;
 use super::super::model::entry::linear;
-use super::super::model::law::Law;
+use super::super::model::law::{Hung, Law};
 use super::fixture::places_amid;
-use super::loads::{FORGOTTEN_AT_TIP, gives_way, joints_give_way, pulled};
-use super::{CalibrationEffect, Context, Entry, Transfer, first, lack, out_of_the_points, own_parameters};
+use super::loads::{FORGOTTEN_AT_TIP, gives_way, heavier, joints_give_way, pulled};
+use super::payload::{CENTRE, MOMENT, at_centre, is_apart, mass_and_centre, not_apart, on_flange};
+use super::{CalibrationEffect, Context, Entry, Transfer, lack, out_of_the_points};
 use crate::inference::{Candidate, Effect, Finding, Kind, Location, NotTestable, Reported, WrittenTo};
 use crate::units::Unit;
 
@@ -34,12 +34,14 @@ pub static LOAD_CHANGE: CalibrationEffect = CalibrationEffect {
         name: "load_change",
         kind: Kind::Event,
         summary: "a load was put on, or taken off, after one pose",
-        formula: "from some row on, at the tip R·C^F·Rᵀ·(m·g) + yield(tip, m·g), at the flange yield(flange, m·g)",
-        prior: "1 kg at the flange: a gripper, a part; 50 g at the tip: a ball and its holder; as rare as a mistake",
-        parameters: &[(
-            &["mass_kg", "mass_g"],
-            "mass after that pose, less that before it; as if at the flange's centre",
-        )],
+        formula: "from some row on, at the tip R·C^F·Rᵀ·(m·g) + yield(tip, m·g), at the flange yield(flange, m·g) + Σ_j Jⱼ·cⱼ·zⱼ·(R·m·c × g)",
+        prior: "1 kg at the flange, its centre within 0.1 m of the flange's along each axis: a gripper, a part; \
+                50 g at the tip: a ball and its holder; as rare as a mistake",
+        parameters: &[
+            (&["mass_kg", "mass_g"], "mass after that pose, less that before it"),
+            (&CENTRE, "centre of that at the flange in {T}, where its mass is known apart from it"),
+            (&MOMENT, "else the moment of its weight, m·c·g, along the axes of {T}"),
+        ],
         needs: "joints of known compliance, or a rod; poses in the order of recording, a tenth of them before it and after it",
         cause: "a load that was put on or taken off",
         cause_at: |location| format!("another load ({location})"),
@@ -49,7 +51,7 @@ pub static LOAD_CHANGE: CalibrationEffect = CalibrationEffect {
         direct_check: Some("Look up what was put on the arm, or taken off, then."),
     },
     candidates: changes,
-    estimates: own_parameters,
+    estimates: mass_and_centre,
     observed: changed,
     write: out_of_the_points,
     transfer: Transfer::Made(stays),
@@ -72,9 +74,14 @@ fn changes(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     let from = |before: &usize| {
         let what = |entry: &Entry| if is_of_tip(&entry.candidate) { AT_TIP } else { AT_FLANGE };
         let before = *before;
-        all.iter()
-            .map(move |entry| entry.starting_at(before, at(context, what(entry), before)))
-            .collect::<Vec<_>>()
+        let starting = |entry: &Entry| {
+            let later = entry.starting_at(before, at(context, what(entry), before));
+            match entry.law {
+                Law::Hung(Hung::FlangeFrom(_)) => later.by(Law::Hung(Hung::FlangeFrom(before))),
+                _ => later,
+            }
+        };
+        all.iter().map(starting).collect::<Vec<_>>()
     };
     let mut changes: Vec<Entry> = places.iter().flat_map(from).collect();
     let share = RARE / changes.len().max(1) as f64;
@@ -93,8 +100,8 @@ fn is_of_tip(candidate: &Candidate) -> bool {
 }
 
 fn at_flange(context: &Context, rows: Range<usize>, location: Location) -> Entry {
-    let column = context.part(rows, |_, there| there.joint_deflection(&there.flange.origin, &there.gravity));
-    Entry::new(&LOAD_CHANGE.effect, location, vec![(linear("mass_kg", PICKED_UP), column)])
+    let law = Law::Hung(Hung::FlangeFrom(rows.start));
+    Entry::new(&LOAD_CHANGE.effect, location, on_flange(context, rows, PICKED_UP)).by(law)
 }
 
 fn at_tip(context: &Context, rows: Range<usize>, location: Location) -> Entry {
@@ -114,10 +121,12 @@ fn stays(context: &Context, candidate: &Candidate, _: &Law) -> Entry {
 fn changed(finding: &Finding, model: &CalibrationModel) -> String {
     let candidate = finding.parts.first().map(|part| &model.terms.candidates[part.term.candidate]);
     let (place, unit) = if candidate.is_some_and(is_of_tip) { ("tip", "g") } else { ("flange", "kg") };
-    let mass = first(finding);
-    let (size, way) = (mass.size().with_unit(unit), if mass.value < 0.0 { "less" } else { "more" });
-    match &finding.location {
-        Location::Shift { after, .. } => format!("The {place} carries {size} {way} after {after}"),
-        other => format!("The {place} carries {size} {way}, {other}"),
+    let when = match &finding.location {
+        Location::Shift { after, .. } => format!(" after {after}"),
+        other => format!(", {other}"),
+    };
+    if place == "flange" && !is_apart(finding) {
+        return format!("The flange carries another load{when}, {}", not_apart(finding));
     }
+    format!("The {place} carries {}{when}{}", heavier(finding, unit), at_centre(finding))
 }

@@ -58,6 +58,8 @@ pub enum Hung {
     Tip,
     /// At the flange.
     Flange,
+    /// At the flange, from this row on, counted from 0.
+    FlangeFrom(usize),
     /// Along the rod: as many times the rod's own mass, tip excepted, as there are too many.
     Rod,
 }

@@ -1,5 +1,7 @@
 //! Deflection of the rod at each pose (Eqs 12–14 and 19) and torques on the joints.
 
+use std::ops::Range;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::campaign::{Campaign, Recording};
@@ -68,11 +70,11 @@ pub struct Compensation {
     pub(crate) carried: Vec<Carried>,
 }
 
-/// A load on the flange from some row of a recording on; less than nothing where one was taken off.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A load on the flange at some rows of a recording.
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Carried {
-    /// The first row, from 0, that it hangs at.
-    pub from: usize,
+    /// Where it hangs, from 0.
+    pub rows: Range<usize>,
     /// Mass, kg.
     pub mass: f64,
     /// First moment about the flange's origin, mass times centre, in {T}, kg·m.
@@ -121,7 +123,7 @@ impl Compensation {
 
     /// What hangs on the flange at a row.
     fn payload_at(&self, row: usize) -> Option<Body> {
-        let there = self.carried.iter().filter(|carried| carried.from <= row);
+        let there = self.carried.iter().filter(|carried| carried.rows.contains(&row));
         there.fold(self.payload, |body, carried| Some(heavier(body, carried.mass, &carried.moment)))
     }
 

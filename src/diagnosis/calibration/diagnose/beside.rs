@@ -49,20 +49,20 @@ pub struct Beside<'c> {
 /// True where a calibration takes a mass into account as its candidate does: not on a rod that it
 /// assumes to be rigid, which bends under it all the same.
 pub fn is_load(model: &CalibrationModel, own: Hung) -> bool {
-    let is_on_flange = matches!(own, Hung::Flange | Hung::FlangeFrom(_));
-    is_on_flange || model.campaign.rod.is_none() || model.calibration.mode != Mode::None
+    own.is_on_flange() || model.campaign.rod.is_none() || model.calibration.mode != Mode::None
 }
 
 impl Loads {
     /// One mass; of a rod so many times its own more.
     pub fn one(own: Hung, mass: f64) -> Loads {
         let moment = Vector3::zeros();
-        let carried = |from| Loads { carried: vec![Carried { from, mass, moment }], ..Loads::none() };
-        match own {
-            Hung::Flange => carried(0),
-            Hung::FlangeFrom(row) => carried(row),
-            Hung::Tip | Hung::Rod => Loads { hung: vec![(own, mass)], ..Loads::none() },
-        }
+        let rows = match own {
+            Hung::Flange => 0..usize::MAX,
+            Hung::FlangeFrom(row) => row..usize::MAX,
+            Hung::FlangeUntil(row) => 0..row,
+            Hung::Tip | Hung::Rod => return Loads { hung: vec![(own, mass)], ..Loads::none() },
+        };
+        Loads { carried: vec![Carried { rows, mass, moment }], ..Loads::none() }
     }
 
     fn none() -> Loads {
@@ -71,16 +71,13 @@ impl Loads {
 
     /// Of what was found.
     pub fn of(model: &CalibrationModel, terms: &[Term]) -> Loads {
+        let rows = model.campaign.measurements.len();
         let carried = |term: &Term| {
-            let from = match model.law(term.candidate) {
-                Law::Hung(Hung::Flange) => Some(0),
-                Law::Hung(Hung::FlangeFrom(row)) => Some(*row),
-                _ => None,
-            };
-            from.map(|from| payload::carried(&model.terms.candidates[term.candidate], term, from))
+            let candidate = &model.terms.candidates[term.candidate];
+            payload::carried(candidate, model.law(term.candidate), term, rows)
         };
         let mass = |term: &Term| match model.law(term.candidate) {
-            Law::Hung(Hung::Flange | Hung::FlangeFrom(_)) => None,
+            Law::Hung(own) if own.is_on_flange() => None,
             Law::Hung(own) if is_load(model, *own) => {
                 let neutral = model.terms.candidates[term.candidate].parameters[0].neutral;
                 Some((*own, term.values.first().map_or(0.0, |value| value - neutral)))
@@ -112,7 +109,7 @@ impl Loads {
         self.hung.iter().fold(carrying, |loaded, (own, more)| match (own, rod) {
             (Hung::Tip, _) => loaded.with_tip_heavier_by(*more, tool),
             (Hung::Rod, Some(rod)) => loaded.with_rod_heavier_by(*more, rod),
-            (Hung::Flange | Hung::FlangeFrom(_), _) | (Hung::Rod, None) => loaded,
+            (Hung::Flange | Hung::FlangeFrom(_) | Hung::FlangeUntil(_), _) | (Hung::Rod, None) => loaded,
         })
     }
 }

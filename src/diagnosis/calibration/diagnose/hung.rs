@@ -181,7 +181,7 @@ fn beside_masses<'c>(prepared: &Prepared<'c>) -> Result<Vec<Beside<'c>>> {
         // nothing weighs less than nothing
         let lightest = match own {
             Hung::Tip => -prepared.context.modelled_mass.0,
-            Hung::Flange | Hung::FlangeFrom(_) => 0.0,
+            Hung::Flange | Hung::FlangeFrom(_) | Hung::FlangeUntil(_) => 0.0,
             Hung::Rod => LIGHTEST_ROD,
         };
         let lighter = if own == Hung::Tip { vec![lightest, lightest / 2.0] } else { Vec::new() };

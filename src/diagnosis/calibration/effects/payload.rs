@@ -8,7 +8,8 @@
 //! data sheets of arms have it. A centre that is held at the flange makes another mass of a load
 //! that hangs beside it, and nothing says so. One prior widens for all four (κ): the moment's size
 //! is that of the mass times [`BESIDE`], so that the centre is within that of the flange whatever
-//! the mass.
+//! the mass. Of what hangs there always the poses show little but the moment: that its centre is
+//! the flange's is a form of its own, and the mass by it is not known apart from the other form's.
 
 use std::ops::Range;
 
@@ -75,19 +76,31 @@ fn payload_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry>
         lacks.push(lack(&PAYLOAD_MASS, "no joint has a known compliance"));
         return Vec::new();
     }
-    let mut parameters = on_flange(context, 0..context.configurations.len(), FORGOTTEN);
+    let mut parameters = on_flange(context, 0..context.configurations.len(), 1.0, FORGOTTEN);
     // no less can hang there than nothing
     parameters[0].0.bounds.0 = -context.modelled_mass.1;
-    let entry = Entry::new(&PAYLOAD_MASS.effect, Location::Part(Part::Flange), parameters);
-    vec![entry.by(Law::Hung(Hung::Flange))]
+    let mass_alone = parameters[..1].to_vec();
+    let at_flange = Location::Form { part: Part::Flange, form: "its centre there".into() };
+    let form = |location, parameters| {
+        let mut entry = Entry::new(&PAYLOAD_MASS.effect, location, parameters).by(Law::Hung(Hung::Flange));
+        (entry.candidate.is_alternative, entry.candidate.weight) = (true, 0.5);
+        entry
+    };
+    vec![form(Location::Part(Part::Flange), parameters), form(at_flange, mass_alone)]
 }
 
-/// Mass and moment of what hangs on the flange at some rows, by its usual mass, kg.
-pub(super) fn on_flange(context: &Context, rows: Range<usize>, usual: f64) -> Vec<(Parameter, Column)> {
-    let mass =
-        context.part(rows.clone(), |_, there| there.joint_deflection(&there.flange.origin, &there.gravity));
+/// Mass and moment of what hangs on the flange at some rows, or of what is missing there (a `sign`
+/// of −1), by its usual mass, kg.
+pub(super) fn on_flange(
+    context: &Context,
+    rows: Range<usize>,
+    sign: f64,
+    usual: f64,
+) -> Vec<(Parameter, Column)> {
+    let pulled = |there: &Configuration| there.joint_deflection(&there.flange.origin, &there.gravity);
+    let mass = context.part(rows.clone(), |_, there| pulled(there) * sign);
     let moment = |(axis, name): (usize, &&str)| {
-        let column = context.part(rows.clone(), |_, there| turned(there, axis));
+        let column = context.part(rows.clone(), |_, there| turned(there, axis) * sign);
         (linear(*name, usual * BESIDE * STANDARD_GRAVITY), column)
     };
     let moments = MOMENT.iter().enumerate().map(moment);
@@ -101,31 +114,74 @@ fn turned(there: &Configuration, axis: usize) -> Vector3<f64> {
     there.joint_deflection_below(there.axis.len().saturating_sub(1), |_| lever, &there.gravity)
 }
 
-/// A load of these values, from a row on.
-pub(in crate::diagnosis::calibration) fn carried(candidate: &Candidate, term: &Term, from: usize) -> Carried {
+/// What hangs on the flange by a term of some law, among so many rows; `None` of anything else.
+pub(in crate::diagnosis::calibration) fn carried(
+    candidate: &Candidate,
+    law: &Law,
+    term: &Term,
+    rows: usize,
+) -> Option<Carried> {
+    let (rows, sign) = match law {
+        Law::Hung(Hung::Flange) => (0..rows, 1.0),
+        Law::Hung(Hung::FlangeFrom(row)) => (*row..rows, 1.0),
+        // that much less hangs there afterwards
+        Law::Hung(Hung::FlangeUntil(row)) => (0..*row, -1.0),
+        Law::Hung(Hung::Tip | Hung::Rod)
+        | Law::Only
+        | Law::Gear(_)
+        | Law::Play(_)
+        | Law::Nonlinear(_)
+        | Law::MassesUnknown(_)
+        | Law::Rod(_)
+        | Law::Drift(..)
+        | Law::Warms(..)
+        | Law::Bends(_)
+        | Law::Moved(_) => return None,
+    };
     let value = |name: &str| {
         let mut own = candidate.parameters.iter().zip(&term.values);
-        own.find(|(parameter, _)| parameter.name == name).map_or(0.0, |(_, value)| *value)
+        own.find(|(parameter, _)| parameter.name == name).map_or(0.0, |(_, value)| sign * value)
     };
-    Carried { from, mass: value(MASS), moment: Vector3::from(MOMENT.map(value)) / STANDARD_GRAVITY }
+    let moment = Vector3::from(MOMENT.map(value)) / STANDARD_GRAVITY;
+    Some(Carried { rows, mass: value(MASS), moment })
 }
 
 /// The mass, and its centre c = s/m; the moment as it is where the mass may be nothing.
-pub(super) fn mass_and_centre(_: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
+pub(super) fn mass_and_centre(model: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
     let of_part = |part: &FindingPart| {
         let names: Vec<&str> = part.estimates.iter().map(|estimate| estimate.name.as_str()).collect();
         let place = |name: &str| names.iter().position(|known| *known == name);
         let Some((mass, estimate)) = place(MASS).and_then(|k| Some((k, part.estimates.get(k)?))) else {
             return part.estimates.clone();
         };
+        let estimate = &with_forms(model, part, estimate);
         if !excludes_zero(estimate) {
-            return part.estimates.clone();
+            let others = part.estimates.iter().enumerate().filter(|(k, _)| *k != mass);
+            return std::iter::once(estimate.clone()).chain(others.map(|(_, own)| own.clone())).collect();
         }
         let centre = |(moment, name): (&str, &str)| Some(centre(part, mass, place(moment)?, name));
         let centres = MOMENT.into_iter().zip(CENTRE).filter_map(centre);
         std::iter::once(estimate.clone()).chain(centres).collect()
     };
     parts.iter().flat_map(of_part).collect()
+}
+
+/// The mass with an interval that holds those of the other forms of the same load that may be
+/// there: with its centre at the flange, or anywhere.
+fn with_forms(model: &CalibrationModel, part: &FindingPart, mass: &Estimate) -> Estimate {
+    let own = model.terms.candidates[part.term.candidate].effect;
+    let mut wider = mass.clone();
+    for rival in part.rivals.iter().filter(|rival| rival.effect == own) {
+        let Some(term) = &rival.term else { continue };
+        let candidate = &model.terms.candidates[term.candidate];
+        let place = candidate.parameters.iter().position(|known| known.name == MASS);
+        let Some(k) = place.filter(|_| candidate.is_alternative) else { continue };
+        let at = rival.hypothesis.covariance.nrows() - term.values.len() + k;
+        let half = part.coverage_factor * rival.hypothesis.covariance[(at, at)].max(0.0).sqrt();
+        wider.low = wider.low.min(term.values[k] - half);
+        wider.high = wider.high.max(term.values[k] + half);
+    }
+    wider
 }
 
 /// c = M/(m·g) along one axis, with ∂c/∂M = 1/(m·g) and ∂c/∂m = −c/m.

@@ -147,7 +147,7 @@ impl<'a> Context<'a> {
     pub fn torque_with_carried(&self, row: usize) -> Vec<f64> {
         let there = &self.configurations[row];
         let mut torque = there.torque.clone();
-        for carried in self.carried.iter().filter(|carried| carried.from <= row) {
+        for carried in self.carried.iter().filter(|carried| carried.rows.contains(&row)) {
             let moment = (there.flange.rotation * carried.moment).cross(&there.gravity);
             let weight = there.gravity * carried.mass;
             for (j, torque) in torque.iter_mut().enumerate() {

@@ -13,8 +13,8 @@ use super::super::model::CalibrationModel;
 use super::super::model::context::{Context, plausible};
 use super::super::model::law::{Hung, Law};
 use super::prepared::Prepared;
-use crate::diagnosis::calibration::effects::payload;
 use crate::calibration::{Calibration, Carried, Compensation, Mode, Noise, Robust, calibrate_from};
+use crate::diagnosis::calibration::effects::payload;
 use crate::error::Result;
 use crate::inference::{Hypothesis, Term, rms};
 use crate::rod::Rod;
@@ -132,15 +132,13 @@ pub fn calibrated_beside<'c>(
     let left = (0..recording.len()).flat_map(|row| <[f64; 3]>::from(residual(row)));
     let left = rms(&DVector::from_iterator(3 * recording.len(), left));
     let expected = rms(&by_linear_model.rows(0, prepared.evidence.recorded).into_owned());
-    let is_same = !turns(&prepared.context, &beside.calibration) && (left - expected).abs() <= LINEAR * expected;
+    let is_same =
+        !turns(&prepared.context, &beside.calibration) && (left - expected).abs() <= LINEAR * expected;
     Ok((!is_same).then_some(beside))
 }
 
 /// A robot that is calibrated with these loads; `None` where that has not converged.
-pub fn calibrated_with<'c>(
-    model: &CalibrationModel<'c>,
-    loads: &Loads,
-) -> Result<Option<Beside<'c>>> {
+pub fn calibrated_with<'c>(model: &CalibrationModel<'c>, loads: &Loads) -> Result<Option<Beside<'c>>> {
     let (campaign, known) = (model.campaign, &model.calibration);
     let plain = Compensation::new(campaign, known.mode)?;
     let loaded = loads.beside(plain.clone(), campaign.rod.as_ref(), &known.setup.tool);

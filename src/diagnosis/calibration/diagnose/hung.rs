@@ -142,10 +142,7 @@ pub fn with_rivals(diagnosis: &mut Diagnosis, rivals: Vec<Rival>) {
 
 /// Robots beside each of several loads of a hypothesis alone: what it takes two to explain about a
 /// robot that was calibrated with neither, one may explain about its own.
-fn beside_one_load<'c>(
-    prepared: &Prepared<'c>,
-    hypothesis: &Hypothesis,
-) -> Result<Vec<Beside<'c>>> {
+fn beside_one_load<'c>(prepared: &Prepared<'c>, hypothesis: &Hypothesis) -> Result<Vec<Beside<'c>>> {
     let model = &prepared.model;
     let all: Vec<&Term> = loads(model, hypothesis).collect();
     if all.len() < 2 {
@@ -171,12 +168,11 @@ fn beside_masses<'c>(prepared: &Prepared<'c>) -> Result<Vec<Beside<'c>>> {
         if !is_possible(own) {
             continue;
         }
-        let with = |mass: f64| {
-            calibrated_with(&prepared.model, &Loads::one(own, mass))
-        };
+        let with = |mass: f64| calibrated_with(&prepared.model, &Loads::one(own, mass));
         let left = |mass: f64| -> Result<f64> {
-            Ok(with(mass)?
-                .map_or(f64::INFINITY, |beside| beside.calibration.deviations.iter().map(|d| d.norm_squared()).sum()))
+            Ok(with(mass)?.map_or(f64::INFINITY, |beside| {
+                beside.calibration.deviations.iter().map(|d| d.norm_squared()).sum()
+            }))
         };
         // nothing weighs less than nothing
         let lightest = match own {

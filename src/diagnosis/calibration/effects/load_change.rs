@@ -109,8 +109,7 @@ fn is_of_tip(candidate: &Candidate) -> bool {
 fn at_flange(context: &Context, rows: Range<usize>, sign: f64, location: Location) -> Entry {
     let mut parameters = on_flange(context, rows, sign, PICKED_UP);
     let stated = context.modelled_mass.1;
-    parameters[0].0.bounds =
-        if sign > 0.0 { (-stated, f64::INFINITY) } else { (f64::NEG_INFINITY, stated) };
+    parameters[0].0.bounds = if sign > 0.0 { (-stated, f64::INFINITY) } else { (f64::NEG_INFINITY, stated) };
     Entry::new(&LOAD_CHANGE.effect, location, parameters)
 }
 

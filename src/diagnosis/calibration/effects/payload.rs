@@ -20,7 +20,7 @@ use super::super::model::law::{Hung, Law};
 use super::super::model::vector::Length;
 use super::super::model::{CalibrationModel, Configuration};
 use super::loads::{heavier, joints_give_way};
-use super::{CalibrationEffect, Context, Entry, Transfer, lack, nth, no_event, out_of_the_points};
+use super::{CalibrationEffect, Context, Entry, Transfer, lack, no_event, nth, out_of_the_points};
 use crate::calibration::Carried;
 use crate::inference::{
     Candidate, Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Parameter, Part,
@@ -212,8 +212,9 @@ pub(super) fn at_centre(finding: &Finding) -> String {
     if !centres().any(excludes_zero) {
         return String::new();
     }
-    let along: Vec<String> =
-        centres().map(|own| format!("{} along {}", own.quantity().with_unit("mm"), axis(&own.name))).collect();
+    let along: Vec<String> = centres()
+        .map(|own| format!("{} along {}", own.quantity().with_unit("mm"), axis(&own.name)))
+        .collect();
     format!(", with its centre {} from the flange's", along.join(", "))
 }
 

@@ -8,7 +8,8 @@ use super::entry::Column;
 use super::patterns::Patterns;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{
-    Calibration, Carried, Compensation, Mode, Robust, SOFTEST, by_own_weight, plausible_compliances, without_tip,
+    Calibration, Carried, Compensation, Mode, Robust, SOFTEST, by_own_weight, plausible_compliances,
+    without_tip,
 };
 use crate::error::Result;
 use crate::inference::Pattern;

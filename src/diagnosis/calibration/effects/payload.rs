@@ -159,6 +159,7 @@ pub(super) fn mass_and_centre(model: &CalibrationModel, parts: &[FindingPart]) -
             let others = part.estimates.iter().enumerate().filter(|(k, _)| *k != mass);
             return std::iter::once(estimate.clone()).chain(others.map(|(_, own)| own.clone())).collect();
         }
+        let estimate = &outwards(estimate);
         let centre = |(moment, name): (&str, &str)| Some(centre(part, mass, place(moment)?, name));
         let centres = MOMENT.into_iter().zip(CENTRE).filter_map(centre);
         std::iter::once(estimate.clone()).chain(centres).collect()
@@ -182,6 +183,16 @@ fn with_forms(model: &CalibrationModel, part: &FindingPart, mass: &Estimate) -> 
         wider.high = wider.high.max(term.values[k] + half);
     }
     wider
+}
+
+/// The poses show mass times compliance, and a quotient is skewed: away from zero the interval is as
+/// wide as that of ln m, m·exp(half/m).
+fn outwards(mass: &Estimate) -> Estimate {
+    let far = |end: f64| mass.value * (end / mass.value - 1.0).abs().exp();
+    match mass.value > 0.0 {
+        true => Estimate { high: far(mass.high), ..mass.clone() },
+        false => Estimate { low: far(mass.low), ..mass.clone() },
+    }
 }
 
 /// c = M/(m·g) along one axis, with ∂c/∂M = 1/(m·g) and ∂c/∂m = −c/m.

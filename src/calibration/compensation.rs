@@ -1,5 +1,7 @@
 //! Deflection of the rod at each pose (Eqs 12–14 and 19) and torques on the joints.
 
+use std::ops::Range;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::campaign::{Campaign, Recording};
@@ -64,6 +66,30 @@ pub struct Compensation {
     /// Other known displacements of the tip at each row, in {W}, m; empty where
     /// nothing is.
     pub displaced: Vec<Vector3<f64>>,
+    /// What else hangs on the flange, under which the rod does not bend.
+    pub(crate) carried: Vec<Carried>,
+}
+
+/// A load on the flange at some rows of a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Carried {
+    /// Where it hangs, from 0.
+    pub rows: Range<usize>,
+    /// Mass, kg.
+    pub mass: f64,
+    /// First moment about the flange's origin, mass times centre, in {T}, kg·m.
+    pub moment: Vector3<f64>,
+}
+
+/// A body without mass has no centre: so light is one that has a first moment all the same, kg.
+const LIGHTEST: f64 = 1e-6;
+
+/// A body with so much more mass (kg) and first moment (kg·m).
+fn heavier(body: Option<Body>, mass: f64, moment: &Vector3<f64>) -> Body {
+    let known = body.unwrap_or(Body { mass: 0.0, centre: Vector3::zeros() });
+    let sum = known.mass + mass;
+    let all = if sum.abs() < LIGHTEST { LIGHTEST } else { sum };
+    Body { mass: all, centre: (known.centre * known.mass + moment) / all }
 }
 
 impl Compensation {
@@ -91,10 +117,14 @@ impl Compensation {
     /// The same with so much more at a point of the flange or of what is on it (in {T}, m), kg,
     /// under which the rod does not bend.
     pub(crate) fn with_payload_heavier_by(&self, mass: f64, point: &Vector3<f64>) -> Self {
-        let body = self.payload.unwrap_or(Body { mass: 0.0, centre: *point });
-        let all = body.mass + mass;
-        let body = Body { mass: all, centre: (body.centre * body.mass + point * mass) / all };
-        Compensation { payload: Some(body).filter(|body| body.mass > 0.0), ..self.clone() }
+        let body = heavier(self.payload, mass, &(point * mass));
+        Compensation { payload: Some(body).filter(|body| body.mass > LIGHTEST), ..self.clone() }
+    }
+
+    /// What hangs on the flange at a row.
+    fn payload_at(&self, row: usize) -> Option<Body> {
+        let there = self.carried.iter().filter(|carried| carried.rows.contains(&row));
+        there.fold(self.payload, |body, carried| Some(heavier(body, carried.mass, &carried.moment)))
     }
 
     /// The same where all of a rod but what is at its tip is heavier by so many times its mass;
@@ -158,6 +188,7 @@ impl Compensation {
             payload: campaign.rod.as_ref().map(|rod| Body { mass: rod.mass(), centre: rod.centre_of_mass() }),
             contact_force: campaign.contact_force.unwrap_or_default(),
             displaced: Vec::new(),
+            carried: Vec::new(),
         })
     }
 
@@ -171,6 +202,7 @@ impl Compensation {
             payload: None,
             contact_force: Vector3::zeros(),
             displaced: Vec::new(),
+            carried: Vec::new(),
         }
     }
 
@@ -233,7 +265,7 @@ impl Compensation {
             let torque = &mut pass.torque[row * n..][..n];
             kinematics.update(recording.joints(row), torque);
             let tip_force = times(&recording.device(row).rotation, &self.contact_force);
-            let loads = Loads { gravity, payload: self.payload, tip_force };
+            let loads = Loads { gravity, payload: self.payload_at(row), tip_force };
             kinematics.torques(&loads, torque);
             let displaced = self.displaced.get(row).copied().unwrap_or_default();
             let structure = kinematics.structural_deflection(&loads);

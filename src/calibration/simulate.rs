@@ -123,6 +123,7 @@ pub fn simulate_telling<'r>(
         payload: Some(payload),
         contact_force: Vector3::from(PAPER_CONTACT_FORCE),
         displaced: Vec::new(),
+        carried: Vec::new(),
     };
     let free = minimal_parameters(robot, truth.tool, rod.tip(), Some(payload));
     let poses = match plan.planned.is_empty() {

@@ -117,8 +117,11 @@ pub fn diagnose_calibrated<'c>(
             Some(Tailed { weights, open }) => (Some(weights), open),
             None => (look.weights, look.far_out),
         };
-        look = FirstLook { scatter: noise, weights, far_out, left, moved_after, turned };
-        let about = about.unwrap_or(prepared.about);
+        let (about, carried) = match about {
+            Some(beside) => (beside.about, beside.carried),
+            None => (prepared.about, look.carried),
+        };
+        look = FirstLook { scatter: noise, weights, far_out, left, moved_after, turned, carried };
         let calibration = prepared.model.calibration;
         prepared = Prepared::about(campaign, calibration, about, &look)?;
         prepared.evidence.correlated_noise = correlated_noise;

@@ -22,6 +22,7 @@ mod load_change;
 pub(super) mod loads;
 pub(super) mod mistakes;
 pub(super) mod mounting;
+pub(super) mod payload;
 mod per_torque;
 pub(super) mod play;
 pub(super) mod procedure;

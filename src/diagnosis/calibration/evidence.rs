@@ -163,8 +163,9 @@ fn fill(jacobian: &mut DMatrix<f64>, calibration: &Calibration, context: &Contex
         kinematics.update(&configuration.joints, &configuration.torque);
         kinematics.tip = configuration.tip;
         let scale = context.scale[row];
+        let torque = context.torque_with_carried(row);
         for (k, estimated) in calibration.parameters.iter().enumerate() {
-            let column = kinematics.column(estimated.parameter, &configuration.torque) * scale;
+            let column = kinematics.column(estimated.parameter, &torque) * scale;
             jacobian.fixed_view_mut::<3, 1>(3 * row, k).copy_from(&column);
         }
         if context.has_sockets() {

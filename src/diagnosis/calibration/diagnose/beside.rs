@@ -13,7 +13,8 @@ use super::super::model::CalibrationModel;
 use super::super::model::context::{Context, plausible};
 use super::super::model::law::{Hung, Law};
 use super::prepared::Prepared;
-use crate::calibration::{Calibration, Compensation, Mode, Noise, Robust, calibrate_from};
+use crate::calibration::{Calibration, Carried, Compensation, Mode, Noise, Robust, calibrate_from};
+use crate::diagnosis::calibration::effects::payload;
 use crate::error::Result;
 use crate::inference::{Hypothesis, Term, rms};
 use crate::rod::Rod;
@@ -29,20 +30,54 @@ const LINEAR: f64 = 0.1;
 pub struct Loads {
     /// Masses that nobody stated, kg, and how many times its mass a rod has too much.
     pub hung: Vec<(Hung, f64)>,
+    /// What hangs on the flange, always or from some row on.
+    pub carried: Vec<Carried>,
     /// What else displaces the tip at each row, m; empty where nothing does.
     pub displaced: Vec<Vector3<f64>>,
+}
+
+/// A robot that was calibrated with loads.
+pub struct Beside<'c> {
+    /// That calibration.
+    pub calibration: Calibration<'c>,
+    /// The same with the rows as if there were none.
+    pub about: Calibration<'c>,
+    /// What hung on its flange: its drives have turned by that too.
+    pub carried: Vec<Carried>,
 }
 
 /// True where a calibration takes a mass into account as its candidate does: not on a rod that it
 /// assumes to be rigid, which bends under it all the same.
 pub fn is_load(model: &CalibrationModel, own: Hung) -> bool {
-    own == Hung::Flange || model.campaign.rod.is_none() || model.calibration.mode != Mode::None
+    own.is_on_flange() || model.campaign.rod.is_none() || model.calibration.mode != Mode::None
 }
 
 impl Loads {
+    /// One mass; of a rod so many times its own more.
+    pub fn one(own: Hung, mass: f64) -> Loads {
+        let moment = Vector3::zeros();
+        let rows = match own {
+            Hung::Flange => 0..usize::MAX,
+            Hung::FlangeFrom(row) => row..usize::MAX,
+            Hung::FlangeUntil(row) => 0..row,
+            Hung::Tip | Hung::Rod => return Loads { hung: vec![(own, mass)], ..Loads::none() },
+        };
+        Loads { carried: vec![Carried { rows, mass, moment }], ..Loads::none() }
+    }
+
+    fn none() -> Loads {
+        Loads { hung: Vec::new(), carried: Vec::new(), displaced: Vec::new() }
+    }
+
     /// Of what was found.
     pub fn of(model: &CalibrationModel, terms: &[Term]) -> Loads {
+        let rows = model.campaign.measurements.len();
+        let carried = |term: &Term| {
+            let candidate = &model.terms.candidates[term.candidate];
+            payload::carried(candidate, model.law(term.candidate), term, rows)
+        };
         let mass = |term: &Term| match model.law(term.candidate) {
+            Law::Hung(own) if own.is_on_flange() => None,
             Law::Hung(own) if is_load(model, *own) => {
                 let neutral = model.terms.candidates[term.candidate].parameters[0].neutral;
                 Some((*own, term.values.first().map_or(0.0, |value| value - neutral)))
@@ -59,20 +94,22 @@ impl Loads {
             | Law::Bends(_)
             | Law::Moved(_) => None,
         };
-        let others: Vec<Term> = terms.iter().filter(|term| mass(term).is_none()).cloned().collect();
+        let is_other = |term: &&Term| mass(term).is_none() && carried(term).is_none();
+        let others: Vec<Term> = terms.iter().filter(is_other).cloned().collect();
         Loads {
             hung: terms.iter().filter_map(mass).collect(),
+            carried: terms.iter().filter_map(carried).collect(),
             displaced: model.by_row(&model.terms.response(&others)),
         }
     }
 
     /// What a campaign compensates, with the masses among its loads.
     pub fn beside(&self, plain: Compensation, rod: Option<&Rod>, tool: &Vector3<f64>) -> Compensation {
-        self.hung.iter().fold(plain, |loaded, (own, more)| match (own, rod) {
+        let carrying = Compensation { carried: self.carried.clone(), ..plain };
+        self.hung.iter().fold(carrying, |loaded, (own, more)| match (own, rod) {
             (Hung::Tip, _) => loaded.with_tip_heavier_by(*more, tool),
-            (Hung::Flange, _) => loaded.with_payload_heavier_by(*more, &Vector3::zeros()),
             (Hung::Rod, Some(rod)) => loaded.with_rod_heavier_by(*more, rod),
-            (Hung::Rod, None) => loaded,
+            (Hung::Flange | Hung::FlangeFrom(_) | Hung::FlangeUntil(_), _) | (Hung::Rod, None) => loaded,
         })
     }
 }
@@ -83,28 +120,25 @@ pub fn calibrated_beside<'c>(
     prepared: &Prepared<'c>,
     hypothesis: &Hypothesis,
     by_linear_model: &DVector<f64>,
-) -> Result<Option<Calibration<'c>>> {
+) -> Result<Option<Beside<'c>>> {
     let model = &prepared.model;
     if hypothesis.terms.is_empty() {
         return Ok(None);
     }
     let loads = Loads::of(model, &hypothesis.terms);
-    let Some((beside, about)) = calibrated_with(model, &loads)? else { return Ok(None) };
+    let Some(beside) = calibrated_with(model, &loads)? else { return Ok(None) };
     let recording = &model.campaign.measurements;
-    let residual = |row: usize| -beside.deviations[row] * model.scale(row);
+    let residual = |row: usize| -beside.calibration.deviations[row] * model.scale(row);
     let left = (0..recording.len()).flat_map(|row| <[f64; 3]>::from(residual(row)));
     let left = rms(&DVector::from_iterator(3 * recording.len(), left));
     let expected = rms(&by_linear_model.rows(0, prepared.evidence.recorded).into_owned());
-    let is_same = !turns(&prepared.context, &beside) && (left - expected).abs() <= LINEAR * expected;
-    Ok((!is_same).then_some(about))
+    let is_same =
+        !turns(&prepared.context, &beside.calibration) && (left - expected).abs() <= LINEAR * expected;
+    Ok((!is_same).then_some(beside))
 }
 
-/// A robot that is calibrated with these loads, and the same with the rows as if there were none;
-/// `None` where that has not converged.
-pub fn calibrated_with<'c>(
-    model: &CalibrationModel<'c>,
-    loads: &Loads,
-) -> Result<Option<(Calibration<'c>, Calibration<'c>)>> {
+/// A robot that is calibrated with these loads; `None` where that has not converged.
+pub fn calibrated_with<'c>(model: &CalibrationModel<'c>, loads: &Loads) -> Result<Option<Beside<'c>>> {
     let (campaign, known) = (model.campaign, &model.calibration);
     let plain = Compensation::new(campaign, known.mode)?;
     let loaded = loads.beside(plain.clone(), campaign.rod.as_ref(), &known.setup.tool);
@@ -123,7 +157,7 @@ pub fn calibrated_with<'c>(
         about.deviations[row] -= loaded.0 - plain.0 + displaced;
         about.deflections[row] -= loaded.1 - plain.1 + displaced;
     }
-    Ok(Some((beside, about)))
+    Ok(Some(Beside { calibration: beside, about, carried: loads.carried.clone() }))
 }
 
 /// True where its drives are otherwise compliant than those that the columns were made with.

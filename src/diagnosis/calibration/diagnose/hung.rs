@@ -14,9 +14,8 @@
 //! explain about a robot that was calibrated with neither, one may explain about its own: a robot
 //! beside each of them alone is sought as well, and is the better one at the odds of any finding.
 
-use super::beside::{Loads, calibrated_with, is_load};
+use super::beside::{Beside, Loads, calibrated_with, is_load};
 use super::prepared::{FirstLook, Prepared};
-use crate::calibration::Calibration;
 use crate::calibration::campaign::Campaign;
 use crate::diagnosis::calibration::effects::registry::pulls;
 use crate::diagnosis::calibration::model::CalibrationModel;
@@ -75,11 +74,11 @@ pub fn beside_hidden_masses<'c>(
     let robots =
         masses.into_iter().map(|robot| (robot, false)).chain(alone.into_iter().map(|own| (own, true)));
     let mut found = vec![(prepared, first)];
-    for ((beside, about), is_alone) in robots {
-        let left = Some(beside.deviations.iter().map(|deviation| -deviation).collect());
-        let look = FirstLook { left, ..look.clone() };
+    for (beside, is_alone) in robots {
+        let left = Some(beside.calibration.deviations.iter().map(|deviation| -deviation).collect());
+        let look = FirstLook { left, carried: beside.carried, ..look.clone() };
         let calibration = found[0].0.model.calibration.clone();
-        let mut other = Prepared::about(campaign, calibration.clone(), about, &look)?;
+        let mut other = Prepared::about(campaign, calibration.clone(), beside.about, &look)?;
         let mut sketched = sketch(&other.model, &other.evidence);
         // a load alone is another one than beside others
         let again = if is_alone {
@@ -87,8 +86,9 @@ pub fn beside_hidden_masses<'c>(
         } else {
             None
         };
-        if let Some((_, about)) = again {
-            other = Prepared::about(campaign, calibration, about, &look)?;
+        if let Some(again) = again {
+            let look = FirstLook { carried: again.carried, ..look.clone() };
+            other = Prepared::about(campaign, calibration, again.about, &look)?;
             sketched = sketch(&other.model, &other.evidence);
         }
         other.evidence.correlated_noise = sketched.correlated_noise;
@@ -142,10 +142,7 @@ pub fn with_rivals(diagnosis: &mut Diagnosis, rivals: Vec<Rival>) {
 
 /// Robots beside each of several loads of a hypothesis alone: what it takes two to explain about a
 /// robot that was calibrated with neither, one may explain about its own.
-fn beside_one_load<'c>(
-    prepared: &Prepared<'c>,
-    hypothesis: &Hypothesis,
-) -> Result<Vec<(Calibration<'c>, Calibration<'c>)>> {
+fn beside_one_load<'c>(prepared: &Prepared<'c>, hypothesis: &Hypothesis) -> Result<Vec<Beside<'c>>> {
     let model = &prepared.model;
     let all: Vec<&Term> = loads(model, hypothesis).collect();
     if all.len() < 2 {
@@ -162,7 +159,7 @@ fn beside_one_load<'c>(
 
 /// Robots beside a mass that may be all that rod and masses of a hypothesis stand for, as in
 /// [`calibrated_with`].
-fn beside_masses<'c>(prepared: &Prepared<'c>) -> Result<Vec<(Calibration<'c>, Calibration<'c>)>> {
+fn beside_masses<'c>(prepared: &Prepared<'c>) -> Result<Vec<Beside<'c>>> {
     let model = &prepared.model;
     let count = model.terms.candidates.len();
     let is_possible = |own: Hung| (0..count).any(|candidate| *model.law(candidate) == Law::Hung(own));
@@ -171,17 +168,16 @@ fn beside_masses<'c>(prepared: &Prepared<'c>) -> Result<Vec<(Calibration<'c>, Ca
         if !is_possible(own) {
             continue;
         }
-        let with = |mass: f64| {
-            calibrated_with(&prepared.model, &Loads { hung: vec![(own, mass)], displaced: Vec::new() })
-        };
+        let with = |mass: f64| calibrated_with(&prepared.model, &Loads::one(own, mass));
         let left = |mass: f64| -> Result<f64> {
-            Ok(with(mass)?
-                .map_or(f64::INFINITY, |beside| beside.0.deviations.iter().map(|d| d.norm_squared()).sum()))
+            Ok(with(mass)?.map_or(f64::INFINITY, |beside| {
+                beside.calibration.deviations.iter().map(|d| d.norm_squared()).sum()
+            }))
         };
         // nothing weighs less than nothing
         let lightest = match own {
             Hung::Tip => -prepared.context.modelled_mass.0,
-            Hung::Flange => 0.0,
+            Hung::Flange | Hung::FlangeFrom(_) | Hung::FlangeUntil(_) => 0.0,
             Hung::Rod => LIGHTEST_ROD,
         };
         let lighter = if own == Hung::Tip { vec![lightest, lightest / 2.0] } else { Vec::new() };

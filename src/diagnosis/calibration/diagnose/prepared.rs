@@ -9,7 +9,7 @@ use super::super::model::torque_uncertainty::TorqueUncertainty;
 use super::super::model::{CalibrationModel, Context, LinearTerms};
 use super::super::nonparametric;
 use crate::calibration::campaign::Campaign;
-use crate::calibration::{Calibration, Noise};
+use crate::calibration::{Calibration, Carried, Noise};
 use crate::error::Result;
 use crate::inference::{Absorbed, Evidence, NotTestable};
 
@@ -41,6 +41,8 @@ pub struct FirstLook {
     pub moved_after: Vec<usize>,
     /// Rows and joints, from 0, whose load pulls to the other side than the file says.
     pub turned: Vec<Side>,
+    /// What hung on the flange of the robot about which effects are linear.
+    pub carried: Vec<Carried>,
 }
 
 impl<'c> Prepared<'c> {
@@ -65,7 +67,8 @@ impl<'c> Prepared<'c> {
         calibration: Calibration<'c>,
         look: &FirstLook,
     ) -> Result<Prepared<'c>> {
-        Prepared::with_effects(campaign, (calibration.clone(), calibration), look, false)
+        let look = FirstLook { carried: Vec::new(), ..look.clone() };
+        Prepared::with_effects(campaign, (calibration.clone(), calibration), &look, false)
     }
 
     fn with_effects(
@@ -87,7 +90,7 @@ impl<'c> Prepared<'c> {
             Some(left) => context.left(left),
             None => context,
         };
-        let context = context.moved_after(&look.moved_after).turned(&look.turned);
+        let context = context.moved_after(&look.moved_after).turned(&look.turned).carrying(&look.carried);
         let evidence = evidence::evidence_of(campaign, &about, &context);
         let (mut entries, not_testable) =
             if has_names { registry::candidates(&context) } else { (Vec::new(), Vec::new()) };

@@ -24,8 +24,6 @@ use crate::units::DEG;
 const SOFTNESS: f64 = 0.27;
 /// Mass at the tip that was forgotten, kg.
 pub(in crate::diagnosis::calibration) const FORGOTTEN_AT_TIP: f64 = 0.05;
-/// Mass at the flange that was forgotten, kg.
-const FORGOTTEN_AT_FLANGE: f64 = 0.5;
 /// Share by which a rod is heavier than its file says: a tube of another wall, another alloy.
 const HEAVIER: f64 = 0.3;
 /// How far from level a robot stands that nobody has levelled, rad.
@@ -125,7 +123,7 @@ fn rod_observed(finding: &Finding, model: &CalibrationModel) -> String {
 }
 
 /// `12 ± 2 g more`.
-fn heavier(finding: &Finding, unit: &str) -> String {
+pub(super) fn heavier(finding: &Finding, unit: &str) -> String {
     let mass = first(finding);
     format!("{} {}", mass.size().with_unit(unit), if mass.value < 0.0 { "less" } else { "more" })
 }
@@ -223,42 +221,6 @@ fn tip_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
     // no less can hang there than nothing
     mass.bounds.0 = -context.modelled_mass.0;
     vec![single(&TIP_MASS, Location::Part(Part::Tip), mass, column).by(Law::Hung(Hung::Tip))]
-}
-
-/// A mass at the flange that was forgotten.
-pub static PAYLOAD_MASS: CalibrationEffect = CalibrationEffect {
-    effect: Effect {
-        name: "payload_mass",
-        kind: Kind::Physics,
-        summary: "a mass at the flange that the files do not state",
-        formula: "yield(flange, m·g)",
-        prior: "0.5 kg: an adapter, a cable",
-        parameters: &[(&["mass_kg"], "mass beyond the stated one")],
-        needs: "joints of known compliance",
-        cause: "a mass that the files do not state",
-        cause_at: |_| "a mass on the flange".into(),
-        written_to: WrittenTo::Recording,
-        reported: Reported::Alone,
-        seen_along: |_| Vec::new(),
-        direct_check: Some("Weigh what is on the flange."),
-    },
-    candidates: payload_masses,
-    estimates: own_parameters,
-    observed: |finding, _| format!("The flange carries {} than stated", heavier(finding, "kg")),
-    write: out_of_the_points,
-    transfer: Transfer::Candidate,
-    event: no_event,
-};
-
-fn payload_masses(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
-    if !joints_give_way(context) {
-        lacks.push(lack(&PAYLOAD_MASS, "no joint has a known compliance"));
-        return Vec::new();
-    }
-    let column = context.column(|_, there| there.joint_deflection(&there.flange.origin, &there.gravity));
-    let mut mass = linear("mass_kg", FORGOTTEN_AT_FLANGE);
-    mass.bounds.0 = -context.modelled_mass.1;
-    vec![single(&PAYLOAD_MASS, Location::Part(Part::Flange), mass, column).by(Law::Hung(Hung::Flange))]
 }
 
 /// A robot that does not stand level.

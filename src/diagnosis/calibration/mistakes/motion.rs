@@ -32,7 +32,7 @@ pub fn beside_found<'c>(
         return Ok(Vec::new());
     }
     let beside = |terms: &[Term]| -> Result<Option<Calibration<'c>>> {
-        Ok(calibrated_with(model, &Loads::of(model, terms))?.map(|(beside, _)| beside))
+        Ok(calibrated_with(model, &Loads::of(model, terms))?.map(|beside| beside.calibration))
     };
     let Some(likeliest) = beside(&hypothesis.terms)? else { return Ok(Vec::new()) };
     let mut all = vec![likeliest];

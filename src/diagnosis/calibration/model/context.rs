@@ -8,7 +8,8 @@ use super::entry::Column;
 use super::patterns::Patterns;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{
-    Calibration, Compensation, Mode, Robust, SOFTEST, by_own_weight, plausible_compliances, without_tip,
+    Calibration, Carried, Compensation, Mode, Robust, SOFTEST, by_own_weight, plausible_compliances,
+    without_tip,
 };
 use crate::error::Result;
 use crate::inference::Pattern;
@@ -70,6 +71,8 @@ pub struct Context<'a> {
     pub moved_after: Vec<usize>,
     /// Rows, and joints, where the load pulls to the other side than the masses of the file say.
     pub turned: Vec<Side>,
+    /// What hung on the flange as the robot was calibrated, beside what the campaign says.
+    carried: Vec<Carried>,
 }
 
 /// What a rod's own weight does.
@@ -134,6 +137,28 @@ impl<'a> Context<'a> {
         Context { turned: sides.to_vec(), ..self }
     }
 
+    /// The same of a robot that was calibrated with these loads on its flange.
+    pub fn carrying(self, carried: &[Carried]) -> Self {
+        Context { carried: carried.to_vec(), ..self }
+    }
+
+    /// Torques on the joints at a row, N·m, what hung on the flange included: by how much the tip
+    /// moves as a drive gives way more. Where a wrist carries little else, the load itself tells
+    /// how far its drives give way, and so its mass is no better known than that.
+    pub fn torque_with_carried(&self, row: usize) -> Vec<f64> {
+        let there = &self.configurations[row];
+        let mut torque = there.torque.clone();
+        for carried in self.carried.iter().filter(|carried| carried.rows.contains(&row)) {
+            let moment = (there.flange.rotation * carried.moment).cross(&there.gravity);
+            let weight = there.gravity * carried.mass;
+            for (j, torque) in torque.iter_mut().enumerate() {
+                // zⱼ·((flange − oⱼ) × m·g + R·s × g)
+                *torque += there.torque_of(j, &there.flange.origin, &weight) + there.axis[j].dot(&moment);
+            }
+        }
+        torque
+    }
+
     /// Of poses that nobody measured, in a recording that came after that of `campaign`.
     pub fn later(asked: &'a Campaign, mode: Mode, setup: &Setup, campaign: &'a Campaign) -> Result<Self> {
         let deflections = Compensation::new(asked, mode)?.deflections(setup, &asked.measurements);
@@ -188,6 +213,7 @@ impl<'a> Context<'a> {
             own_weight,
             moved_after: Vec::new(),
             turned: Vec::new(),
+            carried: Vec::new(),
             compliance_uncertainty: vec![0.0; softest.len()],
             softest,
             modelled_mass: modelled_mass(campaign),

@@ -17,8 +17,9 @@ use crate::units::Unit;
 pub struct Column {
     first: usize,
     all: Arc<[f64]>,
-    /// How many of `all` stand before `first`.
+    /// How many of `all` stand before `first`, and where those of the column end.
     skip: usize,
+    end: usize,
     pattern: Option<Pattern>,
 }
 
@@ -31,19 +32,30 @@ pub struct Entry {
 
 impl Column {
     pub fn new(first: usize, values: Vec<f64>, pattern: Option<Pattern>) -> Column {
-        Column { first, all: values.into(), skip: 0, pattern }
+        Column { first, end: values.len(), all: values.into(), skip: 0, pattern }
     }
 
     /// Its values, from its first on.
     fn values(&self) -> &[f64] {
-        &self.all[self.skip..]
+        &self.all[self.skip..self.end]
     }
 
     /// The same from a row on.
     fn starting_at(&self, row: usize) -> Column {
-        let first = if self.pattern.is_some() { row } else { 3 * row };
-        let skip = (self.skip + first.saturating_sub(self.first)).min(self.all.len());
+        let first = self.place(row);
+        let skip = (self.skip + first.saturating_sub(self.first)).min(self.end);
         Column { first: first.max(self.first), skip, ..self.clone() }
+    }
+
+    /// The same before a row.
+    fn ending_at(&self, row: usize) -> Column {
+        let end = self.skip + self.place(row).saturating_sub(self.first);
+        Column { end: end.min(self.end), ..self.clone() }
+    }
+
+    /// Where the numbers of a row stand.
+    fn place(&self, row: usize) -> usize {
+        if self.pattern.is_some() { row } else { 3 * row }
     }
 
     /// Adds `value` times the column to a recording.
@@ -96,6 +108,12 @@ impl Entry {
     /// The same from a row on, at another place.
     pub fn starting_at(&self, row: usize, location: Location) -> Entry {
         let columns = self.columns.iter().map(|column| column.starting_at(row)).collect();
+        Entry { candidate: Candidate { location, ..self.candidate.clone() }, law: self.law.clone(), columns }
+    }
+
+    /// The same before a row, at another place.
+    pub fn ending_at(&self, row: usize, location: Location) -> Entry {
+        let columns = self.columns.iter().map(|column| column.ending_at(row)).collect();
         Entry { candidate: Candidate { location, ..self.candidate.clone() }, law: self.law.clone(), columns }
     }
 
@@ -159,6 +177,11 @@ mod tests {
             }
             // and again
             assert_eq!(added(&column.starting_at(2).starting_at(3)), from(3));
+            for row in 1..4 {
+                let before = added(&column.ending_at(row));
+                assert_eq!(before + added(&column.starting_at(row)), from(1));
+                assert_eq!(added(&column.ending_at(row).starting_at(row)).amax(), 0.0);
+            }
         }
     }
 }

@@ -58,6 +58,10 @@ pub enum Hung {
     Tip,
     /// At the flange.
     Flange,
+    /// At the flange, from this row on, counted from 0.
+    FlangeFrom(usize),
+    /// At the flange, before this row, counted from 0.
+    FlangeUntil(usize),
     /// Along the rod: as many times the rod's own mass, tip excepted, as there are too many.
     Rod,
 }
@@ -147,6 +151,16 @@ impl Law {
             | Law::Warms(..)
             | Law::Bends(_)
             | Law::Moved(_) => self,
+        }
+    }
+}
+
+impl Hung {
+    /// True for what hangs on the flange, whenever.
+    pub fn is_on_flange(self) -> bool {
+        match self {
+            Hung::Flange | Hung::FlangeFrom(_) | Hung::FlangeUntil(_) => true,
+            Hung::Tip | Hung::Rod => false,
         }
     }
 }

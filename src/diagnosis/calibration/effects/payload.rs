@@ -185,8 +185,8 @@ fn with_forms(model: &CalibrationModel, part: &FindingPart, mass: &Estimate) -> 
     wider
 }
 
-/// The poses show mass times compliance, and a quotient is skewed: away from zero the interval is as
-/// wide as that of ln m, m·exp(half/m).
+/// The poses show mass times compliance, and a quotient is skewed: away from zero the interval is
+/// as wide as that of ln m, m·exp(half/m).
 fn outwards(mass: &Estimate) -> Estimate {
     let far = |end: f64| mass.value * (end / mass.value - 1.0).abs().exp();
     match mass.value > 0.0 {

@@ -21,8 +21,8 @@ pub(in crate::diagnosis::rig::mistakes) struct InTrials {
 }
 
 impl Table<'_> {
-    /// What is written otherwise in some trials than in the others, by one of these `mistakes` or by
-    /// a ratio that is no unit's.
+    /// What is written otherwise in some trials than in the others, by one of these `mistakes` or
+    /// by a ratio that is no unit's.
     pub fn found(&self, mistakes: &[PossibleMistake], unit: LoadColumn) -> Vec<InTrials> {
         let classes = &self.classes;
         if classes.len() < 2 || classes.len() > MOST_CLASSES {

@@ -1,5 +1,5 @@
-//! Trials whose lines are all the same multiple of the others', by a ratio that no usual unit has: a
-//! display in another range, weights on a lever or a block, another rod.
+//! Trials whose lines are all the same multiple of the others', by a ratio that no usual unit has:
+//! a display in another range, weights on a lever or a block, another rod.
 //!
 //! ```text
 //! g = Σ w·y·x/Σ w·x²      y a line of these trials, x the same in the others, w = 1/σ²

@@ -16,13 +16,13 @@ use crate::diagnosis::rig::recording::columns::{columns, load_column};
 use crate::inference::{Estimate, Key};
 use crate::rig::readings::LoadColumn;
 use crate::spatial::Axis;
-use crate::statistics::{HALF_95, median};
+use crate::statistics::{HALF_95, chi_squared_survival, median};
 use crate::units::with_uncertainty;
 
 /// So many lines have the ratio: a single one may be of a part that has come loose in these trials.
 const LINES: usize = 2;
-/// And none of them is farther from it than so many standard errors.
-const ERRORS: f64 = 3.0;
+/// And that they are as far from one ratio has at least this chance.
+const CHANCE: f64 = 0.05;
 
 /// A line of some trials, and the same in those that are right: at the largest load, m.
 struct Both {
@@ -51,16 +51,19 @@ impl Table<'_> {
         let lines = self.both(class, right);
         let most = |size: &dyn Fn(&Both) -> f64| lines.iter().map(size).fold(0.0, f64::max);
         let (most_own, most_right) = (most(&|line| line.own.abs()), most(&|line| line.right.abs()));
-        let is_shown = |line: &&Both| line.right.abs() > SHOWN * most_right;
+        let is_shown =
+            |line: &&Both| line.right.abs() > SHOWN * most_right || line.own.abs() > SHOWN * most_own;
         let ratios: Vec<f64> = lines.iter().filter(is_shown).map(|line| line.own / line.right).collect();
         let about = median(&ratios).filter(|about| ratios.len() >= LINES && *about > 0.0)?;
         let weight = |line: &Both| line.sigma(about, most_right).powi(-2);
         let square: f64 = lines.iter().map(|line| weight(line) * line.right.powi(2)).sum();
         let g = lines.iter().map(|line| weight(line) * line.own * line.right).sum::<f64>() / square;
-        let is_of_it = |line: &Both| (line.own - g * line.right).abs() < ERRORS * line.sigma(g, most_right);
+        let apart = |line: &Both| (line.own - g * line.right) / line.sigma(g, most_right);
+        let misfit: f64 = lines.iter().filter(is_shown).map(|line| apart(line).powi(2)).sum();
+        let by_chance = chi_squared_survival(misfit, (ratios.len() - 1) as f64).ok()?;
         let off: f64 = lines.iter().map(|line| (line.own - line.right).powi(2)).sum();
         let all: f64 = lines.iter().map(|line| line.own.abs().max(line.right.abs()).powi(2)).sum();
-        if !lines.iter().all(is_of_it) || off < OFF * all {
+        if by_chance < CHANCE || off < OFF * all {
             return None;
         }
         let place = self.place(class);

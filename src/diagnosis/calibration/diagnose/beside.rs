@@ -11,7 +11,7 @@ use nalgebra::{DVector, Vector3};
 
 use super::super::model::CalibrationModel;
 use super::super::model::context::{Context, plausible};
-use super::super::model::law::{Hung, Law};
+use super::super::model::law::Hung;
 use super::prepared::Prepared;
 use crate::calibration::{Calibration, Carried, Compensation, Mode, Noise, Robust, calibrate_from};
 use crate::diagnosis::calibration::effects::payload;
@@ -49,18 +49,15 @@ pub struct Beside<'c> {
 /// True where a calibration takes a mass into account as its candidate does: not on a rod that it
 /// assumes to be rigid, which bends under it all the same.
 pub fn is_load(model: &CalibrationModel, own: Hung) -> bool {
-    own.is_on_flange() || model.campaign.rod.is_none() || model.calibration.mode != Mode::None
+    own.rows_on_flange(0).is_some() || model.campaign.rod.is_none() || model.calibration.mode != Mode::None
 }
 
 impl Loads {
     /// One mass; of a rod so many times its own more.
     pub fn one(own: Hung, mass: f64) -> Loads {
         let moment = Vector3::zeros();
-        let rows = match own {
-            Hung::Flange => 0..usize::MAX,
-            Hung::FlangeFrom(row) => row..usize::MAX,
-            Hung::FlangeUntil(row) => 0..row,
-            Hung::Tip | Hung::Rod => return Loads { hung: vec![(own, mass)], ..Loads::none() },
+        let Some(rows) = own.rows_on_flange(usize::MAX) else {
+            return Loads { hung: vec![(own, mass)], ..Loads::none() };
         };
         Loads { carried: vec![Carried { rows, mass, moment }], ..Loads::none() }
     }
@@ -76,23 +73,11 @@ impl Loads {
             let candidate = &model.terms.candidates[term.candidate];
             payload::carried(candidate, model.law(term.candidate), term, rows)
         };
-        let mass = |term: &Term| match model.law(term.candidate) {
-            Law::Hung(own) if own.is_on_flange() => None,
-            Law::Hung(own) if is_load(model, *own) => {
-                let neutral = model.terms.candidates[term.candidate].parameters[0].neutral;
-                Some((*own, term.values.first().map_or(0.0, |value| value - neutral)))
-            }
-            Law::Hung(_)
-            | Law::Only
-            | Law::Gear(_)
-            | Law::Play(_)
-            | Law::Nonlinear(_)
-            | Law::MassesUnknown(_)
-            | Law::Rod(_)
-            | Law::Drift(..)
-            | Law::Warms(..)
-            | Law::Bends(_)
-            | Law::Moved(_) => None,
+        let mass = |term: &Term| {
+            let own = model.law(term.candidate).hung()?;
+            let neutral = model.terms.candidates[term.candidate].parameters[0].neutral;
+            let is_its = own.rows_on_flange(rows).is_none() && is_load(model, own);
+            is_its.then(|| (own, term.values.first().map_or(0.0, |value| value - neutral)))
         };
         let is_other = |term: &&Term| mass(term).is_none() && carried(term).is_none();
         let others: Vec<Term> = terms.iter().filter(is_other).cloned().collect();

@@ -4,7 +4,7 @@
 //! yield(flange, m·g) + Σ_j Jⱼ·cⱼ·zⱼ·(R·s × g)       s = m·c, c the centre in {T}
 //! ```
 //!
-//! Linear in the mass m and in the first moment s, which is told as the moment of weight s·g, as
+//! Linear in the mass m and in the first moment s, which is reported as the moment of weight s·g, as
 //! data sheets of arms have it. A centre that is held at the flange makes another mass of a load
 //! that hangs beside it, and nothing says so. One prior widens for all four (κ): the moment's size
 //! is that of the mass times [`BESIDE`], so that the centre is within that of the flange whatever
@@ -36,7 +36,7 @@ const BESIDE: f64 = 0.1;
 /// Names of the parameters.
 const MASS: &str = "mass_kg";
 pub(super) const MOMENT: [&str; 3] = ["moment_x_nm", "moment_y_nm", "moment_z_nm"];
-/// Names of what is told instead of the moment where the mass is known apart from it.
+/// Names of what is reported instead of the moment where the mass is known apart from it.
 pub(super) const CENTRE: [&str; 3] = ["centre_x_mm", "centre_y_mm", "centre_z_mm"];
 
 /// A mass at the flange that was forgotten.
@@ -121,23 +121,10 @@ pub(in crate::diagnosis::calibration) fn carried(
     term: &Term,
     rows: usize,
 ) -> Option<Carried> {
-    let (rows, sign) = match law {
-        Law::Hung(Hung::Flange) => (0..rows, 1.0),
-        Law::Hung(Hung::FlangeFrom(row)) => (*row..rows, 1.0),
-        // that much less hangs there afterwards
-        Law::Hung(Hung::FlangeUntil(row)) => (0..*row, -1.0),
-        Law::Hung(Hung::Tip | Hung::Rod)
-        | Law::Only
-        | Law::Gear(_)
-        | Law::Play(_)
-        | Law::Nonlinear(_)
-        | Law::MassesUnknown(_)
-        | Law::Rod(_)
-        | Law::Drift(..)
-        | Law::Warms(..)
-        | Law::Bends(_)
-        | Law::Moved(_) => return None,
-    };
+    let own = law.hung()?;
+    let rows = own.rows_on_flange(rows)?;
+    // of a former load it says by how much less hangs there afterwards
+    let sign = if matches!(own, Hung::FlangeUntil(_)) { -1.0 } else { 1.0 };
     let value = |name: &str| {
         let mut own = candidate.parameters.iter().zip(&term.values);
         own.find(|(parameter, _)| parameter.name == name).map_or(0.0, |(_, value)| sign * value)

@@ -17,8 +17,9 @@ use crate::units::Unit;
 pub struct Column {
     first: usize,
     all: Arc<[f64]>,
-    /// How many of `all` stand before `first`, and where those of the column end.
+    /// How many of `all` stand before `first`.
     skip: usize,
+    /// Where in `all` those of the column end.
     end: usize,
     pattern: Option<Pattern>,
 }

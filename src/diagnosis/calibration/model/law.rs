@@ -2,6 +2,8 @@
 //!
 //! The location of a candidate says the same to people; nothing reads it back from there.
 
+use std::ops::Range;
+
 use std::fmt;
 
 use super::gear::Gear;
@@ -134,6 +136,23 @@ impl Law {
 }
 
 impl Law {
+    /// Where the mass of a load hangs; `None` for any other law.
+    pub fn hung(&self) -> Option<Hung> {
+        match self {
+            Law::Hung(own) => Some(*own),
+            Law::Only
+            | Law::Gear(_)
+            | Law::Play(_)
+            | Law::Nonlinear(_)
+            | Law::MassesUnknown(_)
+            | Law::Rod(_)
+            | Law::Drift(..)
+            | Law::Warms(..)
+            | Law::Bends(_)
+            | Law::Moved(_) => None,
+        }
+    }
+
     /// The law of those parameters that are kept, of as many as `is_kept` has.
     pub fn of_parameters(self, is_kept: &[bool]) -> Law {
         match self {
@@ -156,11 +175,13 @@ impl Law {
 }
 
 impl Hung {
-    /// True for what hangs on the flange, whenever.
-    pub fn is_on_flange(self) -> bool {
+    /// The rows at which it hangs on the flange, of so many; `None` for what hangs elsewhere.
+    pub fn rows_on_flange(self, count: usize) -> Option<Range<usize>> {
         match self {
-            Hung::Flange | Hung::FlangeFrom(_) | Hung::FlangeUntil(_) => true,
-            Hung::Tip | Hung::Rod => false,
+            Hung::Flange => Some(0..count),
+            Hung::FlangeFrom(row) => Some(row..count),
+            Hung::FlangeUntil(row) => Some(0..row),
+            Hung::Tip | Hung::Rod => None,
         }
     }
 }

@@ -155,8 +155,8 @@ fn a_load_beside_the_flange_has_its_mass_and_its_centre() {
     }
 }
 
-/// What hangs beside the flange always shows its moment: its mass is told with an interval that
-/// holds it, or not apart from its centre.
+/// What always hangs beside the flange shows its moment: the interval of its mass holds the true one,
+/// or mass and centre are not distinguished.
 #[test]
 fn a_payload_beside_the_flange_is_one() {
     let at = Vector3::new(0.0, 0.15, 0.05);

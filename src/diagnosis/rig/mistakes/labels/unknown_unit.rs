@@ -7,7 +7,7 @@ use crate::diagnosis::rig::effects::mistakes::UNIT_MISTAKE;
 use crate::diagnosis::rig::mistakes::possible::PossibleMistake;
 use crate::diagnosis::rig::mistakes::relabelling::Relabelling;
 use crate::diagnosis::rig::recording::columns::{columns, load_column};
-use crate::inference::{Effect, Estimate, Finding, Key};
+use crate::inference::{Effect, Estimate, Finding, Key, Location};
 use crate::spatial::Axis;
 use crate::units::significant;
 
@@ -15,8 +15,6 @@ use crate::units::significant;
 /// one that is known, within the 2 % that a rod's own stiffness leaves of it:
 /// 0.02·√(2π)/ln 10¹².
 const ANY_FACTOR: f64 = -6.3;
-/// What readings or loads have to be multiplied by.
-const FACTOR: &str = "factor";
 /// A rod whose stiffness alone is so far from its file's may have other walls, or be of another
 /// material: farther, a unit is looked for.
 pub(in crate::diagnosis::rig::mistakes) const BEYOND_A_ROD: f64 = 3.0;
@@ -56,7 +54,7 @@ fn unknown_unit(labels: &Labels, channels: &[Axis], log_scale: f64) -> Option<Po
         relabelling: Relabelling::reading(ALL, mask(channels), factor),
         log_prior: UNUSUAL + ANY_FACTOR,
         // the rod itself may be stiffer or softer than its file says
-        estimates: vec![Estimate::as_written(FACTOR, factor, factor / BESIDE, factor * BESIDE)],
+        estimates: vec![Estimate::as_written("factor", factor, factor / BESIDE, factor * BESIDE)],
         observed: format!(
             "{names} {is} about {times} times too {size} for these loads on this rod, which no usual unit is: \
              look up the unit and the amplification of {names}{and_loads}",
@@ -75,9 +73,11 @@ impl PossibleMistake {
     }
 }
 
-/// True for a factor that only the rod itself says: of no unit that has a name.
+/// True for a factor that only the rod itself says: of no unit that has a name, and in all rows, so
+/// that no others say it.
 pub fn is_unknown_unit(finding: &Finding) -> bool {
-    is_unknown(finding.effect, &finding.estimates)
+    let is_everywhere = matches!(&finding.location, Location::Key(key) if key.rows.is_empty());
+    is_everywhere && is_unknown(finding.effect, &finding.estimates)
 }
 
 /// True for a unit whose factor is one that a rod of other walls, or of another material, has.
@@ -87,6 +87,5 @@ pub fn is_like_a_rod(finding: &Finding) -> bool {
 }
 
 fn is_unknown(effect: &Effect, estimates: &[Estimate]) -> bool {
-    let is_unknown = |factor: &Estimate| factor.name == FACTOR && factor.low < factor.high;
-    *effect == UNIT_MISTAKE && estimates.iter().any(is_unknown)
+    *effect == UNIT_MISTAKE && estimates.iter().any(|factor| factor.low < factor.high)
 }

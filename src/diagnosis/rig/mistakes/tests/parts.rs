@@ -184,7 +184,7 @@ fn a_trial_of_a_softer_rod_is_no_unit() {
                 .for_each(|y| *y *= factor);
             let mended = mended(&softer, Some(file), &[]).unwrap();
             let is_any_multiple = |own: &Finding| {
-                let may_be_a_rod = own.rivals.iter().any(|rival| rival.effect.name == "stiffness_scale");
+                let may_be_a_rod = own.rivals.iter().any(|rival| rival.effect.name == "rod_mistake");
                 own.estimates[0].low < own.estimates[0].high && may_be_a_rod
             };
             assert!(mended.found.iter().all(is_any_multiple), "{what} {factor}: {:?}", names(&mended));

@@ -11,7 +11,7 @@ use crate::rig::readings::LoadColumn;
 
 /// Share of the squares of the deflections that a change must find, and that it may leave.
 pub(super) const OFF: f64 = 0.05;
-pub(super) const LEFT: f64 = 0.02;
+const LEFT: f64 = 0.02;
 
 /// A mistake in the rows of some trials.
 pub(in crate::diagnosis::rig::mistakes) struct InTrials {

@@ -6,11 +6,12 @@
 //! σ² = y_e² + (g·x_e)² + (0.01·g·x_max)²
 //! ```
 
+use std::collections::BTreeSet;
+
 use super::explained::{InTrials, OFF};
 use super::right::{REPEATS, Right};
 use super::table::{SHOWN, Table};
-use crate::diagnosis::rig::effects::mistakes::UNIT_MISTAKE;
-use crate::diagnosis::rig::effects::structure::STIFFNESS_SCALE;
+use crate::diagnosis::rig::effects::mistakes::{ROD_MISTAKE, UNIT_MISTAKE};
 use crate::diagnosis::rig::mistakes::part::Part;
 use crate::diagnosis::rig::recording::columns::{columns, load_column};
 use crate::inference::{Estimate, Key};
@@ -26,6 +27,7 @@ const CHANCE: f64 = 0.05;
 
 /// A line of some trials, and the same in those that are right: at the largest load, m.
 struct Both {
+    line: usize,
     channel: Axis,
     own: f64,
     own_error: f64,
@@ -54,7 +56,8 @@ impl Table<'_> {
         let is_shown =
             |line: &&Both| line.right.abs() > SHOWN * most_right || line.own.abs() > SHOWN * most_own;
         let ratios: Vec<f64> = lines.iter().filter(is_shown).map(|line| line.own / line.right).collect();
-        let about = median(&ratios).filter(|about| ratios.len() >= LINES && *about > 0.0)?;
+        let different: BTreeSet<usize> = lines.iter().filter(is_shown).map(|line| line.line).collect();
+        let about = median(&ratios).filter(|about| different.len() >= LINES && *about > 0.0)?;
         let weight = |line: &Both| line.sigma(about, most_right).powi(-2);
         let square: f64 = lines.iter().map(|line| weight(line) * line.right.powi(2)).sum();
         let g = lines.iter().map(|line| weight(line) * line.own * line.right).sum::<f64>() / square;
@@ -63,11 +66,11 @@ impl Table<'_> {
         let by_chance = chi_squared_survival(misfit, (ratios.len() - 1) as f64).ok()?;
         let off: f64 = lines.iter().map(|line| (line.own - line.right).powi(2)).sum();
         let all: f64 = lines.iter().map(|line| line.own.abs().max(line.right.abs()).powi(2)).sum();
-        if by_chance < CHANCE || off < OFF * all {
+        let half = HALF_95 * square.powf(-0.5);
+        if by_chance < CHANCE || off < OFF * all || half >= g {
             return None;
         }
         let place = self.place(class);
-        let half = HALF_95 * square.powf(-0.5);
         let mut channels: Vec<Axis> = lines.iter().map(|line| line.channel).collect();
         channels.sort_unstable();
         channels.dedup();
@@ -76,7 +79,7 @@ impl Table<'_> {
         let part = Part {
             effect: &UNIT_MISTAKE,
             location: Key::new(&names).rows(&place),
-            estimates: vec![Estimate::as_written("ratio", g, g - half, g + half)],
+            estimates: vec![Estimate::as_written("factor", 1.0 / g, 1.0 / (g + half), 1.0 / (g - half))],
             observed: format!(
                 "In {place}, {names} are {times} times what the other trials show under these loads, which no \
                  usual unit is: look up the range of the display, what hung there and on which rod; until then \
@@ -87,7 +90,7 @@ impl Table<'_> {
             data: (0..self.data.len()).filter(|&i| class.contains(&self.trial[i])).collect(),
             rivals: vec![
                 (&UNIT_MISTAKE, Key::new(load_column(unit)).rows(&place)),
-                (&STIFFNESS_SCALE.effect, Key::new("rod").rows(&place)),
+                (&ROD_MISTAKE, Key::new("rod").rows(&place)),
             ],
         };
         Some(InTrials { part, relabelling: None })
@@ -99,6 +102,7 @@ impl Table<'_> {
             let line = move |(k, right): (usize, &Option<Right>)| {
                 let (cell, right) = (self.cells[trial][k]?, right.as_ref()?);
                 Some(Both {
+                    line: k,
                     channel: self.lines[k].channel,
                     own: cell.fit.slope * cell.load,
                     own_error: cell.fit.error * cell.load,

@@ -28,7 +28,7 @@ use crate::inference::noise::scatter::in_spread;
 use crate::inference::noise::whitening::Whitening;
 use crate::inference::score::ColumnBlock;
 use crate::inference::score::priors::priors;
-use crate::inference::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Term};
+use crate::inference::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Parameter, Term};
 use crate::linalg::transposed_product;
 use crate::parallel::in_parallel_outside_of_jobs;
 
@@ -41,6 +41,8 @@ const SCORED: usize = 6;
 const AT_ONCE: usize = 64;
 /// Steps of one sequence are so many data apart at least.
 const NO_STEP: usize = 3;
+/// Two responses are one within this share of the larger.
+const SAME: f64 = 1e-9;
 
 /// Looks for the most probable hypothesis.
 pub struct Search<'a> {
@@ -216,16 +218,35 @@ impl<'a> Search<'a> {
             || are_near()
     }
 
-    /// Other forms of the law that a candidate is one of, with the same parameters.
+    /// Other forms of the law that a candidate is one of: with the same parameters, or with more
+    /// that make it this one where they are neutral.
     pub fn other_forms(&self, index: usize) -> Vec<usize> {
         let candidates = self.model.candidates();
         let own = &candidates[index];
         let names = |c: &Candidate| c.parameters.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
         let is_form = |&other: &usize| {
             let c = &candidates[other];
-            own.is_alternative && c.is_alternative && c.effect == own.effect && names(c) == names(own)
+            let is_law = own.is_alternative && c.is_alternative && c.effect == own.effect;
+            is_law && (names(c) == names(own) || self.is_held_by(index, other))
         };
         (0..candidates.len()).filter(|&other| other != index).filter(is_form).collect()
+    }
+
+    /// True where a candidate is another one whose further parameters are neutral.
+    fn is_held_by(&self, index: usize, other: usize) -> bool {
+        let [own, wider] = [index, other].map(|index| &self.model.candidates()[index]);
+        let value = |p: &Parameter| p.neutral + p.size;
+        let is_own = |p: &Parameter| own.parameters.iter().any(|known| known.name == p.name);
+        if wider.parameters.len() <= own.parameters.len()
+            || wider.parameters.iter().filter(|p| is_own(p)).count() < own.parameters.len()
+        {
+            return false;
+        }
+        let values = wider.parameters.iter().map(|p| if is_own(p) { value(p) } else { p.neutral }).collect();
+        let by_wider = self.model.response(&[Term { candidate: other, values }]);
+        let values = own.parameters.iter().map(value).collect();
+        let by_own = self.model.response(&[Term { candidate: index, values }]);
+        (by_wider - &by_own).amax() <= SAME * by_own.amax()
     }
 
     /// Candidates that may be added, known or unknown ones, the likeliest first.

@@ -277,6 +277,30 @@ fn an_interval_holds_what_another_form_of_the_law_says() {
     assert_eq!(widened("square", |x| 2.0 * x * x * x).1, alone);
 }
 
+/// A form with one parameter more, that is the line where it is neutral, knows the line's factor
+/// less well: the interval holds that too. One that is another line there says nothing of it.
+#[test]
+fn an_interval_holds_what_a_wider_form_of_the_law_says() {
+    let half = |wider: Option<f64>| {
+        let mut model = Columns::new(COUNT);
+        model.add("law", "linear", column(|x| x), false);
+        if let Some(factor) = wider {
+            let columns = DMatrix::from_fn(COUNT, 2, |row, k| [factor * x(row), x(row).powi(2)][k]);
+            model.add("law", "wider", columns, false);
+            model.candidates[1].parameters[1].name = "more".into();
+        }
+        for candidate in &mut model.candidates {
+            candidate.is_alternative = true;
+            // no place along anything, of which neighbours count as well
+            candidate.location = Location::Part(Part::Rod);
+        }
+        let (_, low, high) = the_line(&diagnose(&model, &evidence(3, |x| 6.0 * x)));
+        0.5 * (high - low)
+    };
+    assert!(half(Some(1.0)) > 2.0 * half(None), "{} {}", half(Some(1.0)), half(None));
+    assert_eq!(half(Some(2.0)), half(None));
+}
+
 /// A second effect that may be there as well makes the first one less sure, as much as it is
 /// likely.
 #[test]

@@ -203,7 +203,9 @@ fn averaged(
 
 /// Makes intervals hold those of another hypothesis.
 fn widen(estimates: &mut [Estimate], others: Vec<Estimate>) {
-    for (known, other) in estimates.iter_mut().zip(others).filter(|(known, other)| known.name == other.name) {
+    let named = |known: &Estimate| others.iter().find(|other| other.name == known.name);
+    for known in estimates {
+        let Some(other) = named(known) else { continue };
         (known.low, known.high) = (known.low.min(other.low), known.high.max(other.high));
     }
 }

@@ -4,12 +4,12 @@
 //! yield(flange, m·g) + Σ_j Jⱼ·cⱼ·zⱼ·(R·s × g)       s = m·c, c the centre in {T}
 //! ```
 //!
-//! Linear in the mass m and in the first moment s, which is reported as the moment of weight s·g, as
-//! data sheets of arms have it. A centre that is held at the flange makes another mass of a load
+//! Linear in the mass m and in the first moment s, which is reported as the moment of weight s·g,
+//! as data sheets of arms have it. A centre that is held at the flange makes another mass of a load
 //! that hangs beside it, and nothing says so. One prior widens for all four (κ): the moment's size
 //! is that of the mass times [`BESIDE`], so that the centre is within that of the flange whatever
 //! the mass. Of what hangs there always the poses show little but the moment: that its centre is
-//! the flange's is a form of its own, and the mass by it is not known apart from the other form's.
+//! the flange's is a form of its own, and the interval of its mass holds that of any centre too.
 
 use std::ops::Range;
 
@@ -134,42 +134,20 @@ pub(in crate::diagnosis::calibration) fn carried(
 }
 
 /// The mass, and its centre c = s/m; the moment as it is where the mass may be nothing.
-pub(super) fn mass_and_centre(model: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
+pub(super) fn mass_and_centre(_: &CalibrationModel, parts: &[FindingPart]) -> Vec<Estimate> {
     let of_part = |part: &FindingPart| {
-        let names: Vec<&str> = part.estimates.iter().map(|estimate| estimate.name.as_str()).collect();
-        let place = |name: &str| names.iter().position(|known| *known == name);
-        let Some((mass, estimate)) = place(MASS).and_then(|k| Some((k, part.estimates.get(k)?))) else {
+        let place = |name: &str| part.estimates.iter().position(|own| own.name == name);
+        let Some((mass, estimate)) = place(MASS).map(|k| (k, &part.estimates[k])) else {
             return part.estimates.clone();
         };
-        let estimate = &with_forms(model, part, estimate);
         if !excludes_zero(estimate) {
-            let others = part.estimates.iter().enumerate().filter(|(k, _)| *k != mass);
-            return std::iter::once(estimate.clone()).chain(others.map(|(_, own)| own.clone())).collect();
+            return part.estimates.clone();
         }
-        let estimate = &outwards(estimate);
         let centre = |(moment, name): (&str, &str)| Some(centre(part, mass, place(moment)?, name));
         let centres = MOMENT.into_iter().zip(CENTRE).filter_map(centre);
-        std::iter::once(estimate.clone()).chain(centres).collect()
+        std::iter::once(outwards(estimate)).chain(centres).collect()
     };
     parts.iter().flat_map(of_part).collect()
-}
-
-/// The mass with an interval that holds those of the other forms of the same load that may be
-/// there: with its centre at the flange, or anywhere.
-fn with_forms(model: &CalibrationModel, part: &FindingPart, mass: &Estimate) -> Estimate {
-    let own = model.terms.candidates[part.term.candidate].effect;
-    let mut wider = mass.clone();
-    for rival in part.rivals.iter().filter(|rival| rival.effect == own) {
-        let Some(term) = &rival.term else { continue };
-        let candidate = &model.terms.candidates[term.candidate];
-        let place = candidate.parameters.iter().position(|known| known.name == MASS);
-        let Some(k) = place.filter(|_| candidate.is_alternative) else { continue };
-        let at = rival.hypothesis.covariance.nrows() - term.values.len() + k;
-        let half = part.coverage_factor * rival.hypothesis.covariance[(at, at)].max(0.0).sqrt();
-        wider.low = wider.low.min(term.values[k] - half);
-        wider.high = wider.high.max(term.values[k] + half);
-    }
-    wider
 }
 
 /// The poses show mass times compliance, and a quotient is skewed: away from zero the interval is

@@ -155,15 +155,16 @@ fn a_load_beside_the_flange_has_its_mass_and_its_centre() {
     }
 }
 
-/// What always hangs beside the flange shows its moment: the interval of its mass holds the true one,
-/// or mass and centre are not distinguished.
+/// What always hangs there shows little but its moment: the interval of its mass holds the true one
+/// whatever its centre, also where the form with its centre at the flange is the likelier one.
 #[test]
 fn a_payload_beside_the_flange_is_one() {
-    let at = Vector3::new(0.0, 0.15, 0.05);
-    let found = only(&|r, _, _| hang(r, 8.0, at), 11);
-    assert_eq!(found.effect.name, "payload_mass");
-    let mass = found.quantity("mass_kg").unwrap();
-    assert!(mass.low <= 8.0 && 8.0 <= mass.high, "{mass:?}");
+    for (seed, at) in [(11, Vector3::new(0.0, 0.15, 0.05)), (14, Vector3::new(0.0, 0.0, 0.05))] {
+        let found = only(&|r, _, _| hang(r, 8.0, at), seed);
+        assert_eq!(found.effect.name, "payload_mass");
+        let mass = found.quantity("mass_kg").unwrap();
+        assert!(mass.low <= 8.0 && 8.0 <= mass.high, "{at}: {mass:?}");
+    }
 }
 
 /// A drive turns by what hung there as the robot was calibrated, at the rows where it hung.
@@ -190,17 +191,7 @@ fn a_load_that_was_put_on_the_ball_is_no_move_of_the_base() {
     assert_eq!(found, ("load_change".into(), "load of the tip, after pose 30".into()));
 }
 
-/// A base that moved stays one.
-#[test]
-fn a_base_that_moved_is_no_load() {
-    let found = named(
-        &|r, row, _| r.off += Vector3::new(0.1e-3, -0.08e-3, 0.06e-3) * (if row >= 40 { 1.0 } else { 0.0 }),
-        3,
-    );
-    assert_eq!(found, ("base_shift".into(), "after pose 40".into()));
-}
-
-/// A drive that gives way more from a pose on is none either: it has no name, but its torque is
+/// A drive that gives way more from a pose on is no load: it has no name, but its torque is
 /// what the poses follow.
 #[test]
 fn a_drive_that_softens_is_no_load() {

@@ -96,7 +96,7 @@ pub fn diagnose_calibrated<'c>(
         let Sketch { hypothesis, left, correlated_noise, .. } = sketch(&prepared.model, &prepared.evidence);
         prepared.evidence.correlated_noise = correlated_noise;
         may_hide_masses |= may_hide(&prepared, &hypothesis);
-        let about = calibrated_beside(&prepared, &hypothesis, &left)?;
+        let about = calibrated_beside(&prepared, &hypothesis, &left)?.another();
         let noise = unequal(&prepared, &hypothesis, &left)?;
         let is_equal = noise.is_none() == look.scatter.is_none();
         // groups of unequal scatter look like heavy tails as long as they count alike

@@ -46,6 +46,26 @@ pub struct Beside<'c> {
     pub carried: Vec<Carried>,
 }
 
+/// The robot that is calibrated beside a hypothesis, and the one about which that was found.
+pub enum Again<'c> {
+    /// It is the same for all that its columns show.
+    Same,
+    /// It is another one that leaves what the hypothesis says.
+    Near(Beside<'c>),
+    /// It leaves something else: the hypothesis is farther from the one than it is linear.
+    Far(Beside<'c>),
+}
+
+impl<'c> Again<'c> {
+    /// Where it is another one.
+    pub fn another(self) -> Option<Beside<'c>> {
+        match self {
+            Again::Same => None,
+            Again::Near(beside) | Again::Far(beside) => Some(beside),
+        }
+    }
+}
+
 /// True where a calibration takes a mass into account as its candidate does: not on a rod that it
 /// assumes to be rigid, which bends under it all the same.
 pub fn is_load(model: &CalibrationModel, own: Hung) -> bool {
@@ -99,27 +119,29 @@ impl Loads {
     }
 }
 
-/// That robot, the rows as if nothing had been found; `None` where it is the same for all that its
-/// columns show.
+/// That robot, the rows as if nothing had been found. One whose calibration has not converged is
+/// not known to be another.
 pub fn calibrated_beside<'c>(
     prepared: &Prepared<'c>,
     hypothesis: &Hypothesis,
     by_linear_model: &DVector<f64>,
-) -> Result<Option<Beside<'c>>> {
+) -> Result<Again<'c>> {
     let model = &prepared.model;
-    if hypothesis.terms.is_empty() {
-        return Ok(None);
+    if hypothesis.terms.is_empty() && prepared.is_as_calibrated() {
+        return Ok(Again::Same);
     }
     let loads = Loads::of(model, &hypothesis.terms);
-    let Some(beside) = calibrated_with(model, &loads)? else { return Ok(None) };
+    let Some(beside) = calibrated_with(model, &loads)? else { return Ok(Again::Same) };
     let recording = &model.campaign.measurements;
     let residual = |row: usize| -beside.calibration.deviations[row] * model.scale(row);
     let left = (0..recording.len()).flat_map(|row| <[f64; 3]>::from(residual(row)));
     let left = rms(&DVector::from_iterator(3 * recording.len(), left));
     let expected = rms(&by_linear_model.rows(0, prepared.evidence.recorded).into_owned());
-    let is_same =
-        !turns(&prepared.context, &beside.calibration) && (left - expected).abs() <= LINEAR * expected;
-    Ok((!is_same).then_some(beside))
+    Ok(match (left - expected).abs() <= LINEAR * expected {
+        true if !turns(&prepared.context, &beside.calibration) => Again::Same,
+        true => Again::Near(beside),
+        false => Again::Far(beside),
+    })
 }
 
 /// A robot that is calibrated with these loads; `None` where that has not converged.

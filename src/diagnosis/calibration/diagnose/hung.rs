@@ -13,8 +13,12 @@
 //! and the search is made about that robot too. Where several loads are found, what it took two to
 //! explain about a robot that was calibrated with neither, one may explain about its own: a robot
 //! beside each of them alone is sought as well, and is the better one at the odds of any finding.
+//!
+//! What is found about a robot is asked again about the one that is calibrated beside it, and counts
+//! where that one leaves what it says: drives that turn by a weight make columns that say nothing
+//! of the arm without it.
 
-use super::beside::{Beside, Loads, calibrated_with, is_load};
+use super::beside::{Again, Beside, Loads, calibrated_beside, calibrated_with, is_load};
 use super::prepared::{FirstLook, Prepared};
 use crate::calibration::campaign::Campaign;
 use crate::diagnosis::calibration::effects::registry::pulls;
@@ -34,6 +38,8 @@ const TRIED: [(Hung, &[f64]); 3] = [
 ];
 /// A rod that weighs a tenth: none is lighter.
 const LIGHTEST_ROD: f64 = -0.9;
+/// Times that a robot is calibrated again beside what is found about it.
+const AGAIN: usize = 3;
 /// Times that the steps about the best one are halved.
 const HALVED: usize = 4;
 
@@ -68,34 +74,24 @@ pub fn beside_hidden_masses<'c>(
     prepared: Prepared<'c>,
     look: &FirstLook,
 ) -> Result<BesideMasses<'c>> {
-    let first = sketch(&prepared.model, &prepared.evidence);
-    let masses = beside_masses(&prepared)?;
-    let alone = beside_one_load(&prepared, &first.hypothesis)?;
-    let robots =
-        masses.into_iter().map(|robot| (robot, false)).chain(alone.into_iter().map(|own| (own, true)));
-    let mut found = vec![(prepared, first)];
-    for (beside, is_alone) in robots {
+    let first = Found::about(prepared, false).followed(look, AGAIN, f64::NEG_INFINITY)?;
+    let masses = beside_masses(&first.prepared)?;
+    let alone = beside_one_load(&first.prepared, &first.sketch.hypothesis)?;
+    let calibration = first.prepared.model.calibration.clone();
+    let mut found = vec![first];
+    for beside in masses.into_iter().chain(alone) {
         let left = Some(beside.calibration.deviations.iter().map(|deviation| -deviation).collect());
         let look = FirstLook { left, carried: beside.carried, ..look.clone() };
-        let calibration = found[0].0.model.calibration.clone();
-        let mut other = Prepared::about(campaign, calibration.clone(), beside.about, &look)?;
-        let mut sketched = sketch(&other.model, &other.evidence);
-        // a load alone is another one than beside others
-        let again = if is_alone {
-            calibrated_with(&other.model, &Loads::of(&other.model, &sketched.hypothesis.terms))?
-        } else {
-            None
-        };
-        if let Some(again) = again {
-            let look = FirstLook { carried: again.carried, ..look.clone() };
-            other = Prepared::about(campaign, calibration, again.about, &look)?;
-            sketched = sketch(&other.model, &other.evidence);
-        }
-        other.evidence.correlated_noise = sketched.correlated_noise;
-        found.push((other, sketched));
+        let other = Prepared::about(campaign, calibration.clone(), beside.about, &look)?;
+        let known = found.iter().filter(|other| other.holds).map(Found::log_probability);
+        let least = known.fold(f64::NEG_INFINITY, f64::max) - APART.ln();
+        found.push(Found::about(other, true).followed(&look, AGAIN, least)?);
     }
-    let all: Vec<Vec<_>> = found.iter().map(|(other, sketched)| named(other, sketched)).collect();
-    let probability = |k: usize| found[k].1.log_probability;
+    if found.iter().any(|other| other.holds) {
+        found.retain(|other| other.holds);
+    }
+    let all: Vec<Vec<_>> = found.iter().map(Found::named).collect();
+    let probability = |k: usize| found[k].log_probability();
     let by_probability = |a: &usize, b: &usize| probability(*a).total_cmp(&probability(*b));
     let best = (0..found.len()).max_by(by_probability).unwrap_or(0);
     // one load more is named at the odds of any finding
@@ -116,16 +112,55 @@ pub fn beside_hidden_masses<'c>(
         let others = named.iter().filter(|known| !own.contains(known)).cloned();
         rivals.extend(others.map(|(effect, location)| Rival::without_term(effect, location, odds)));
     }
-    let (prepared, _) = found.swap_remove(best);
-    Ok(BesideMasses { prepared, rivals, is_another: best > 0 })
+    let Found { prepared, is_another, .. } = found.swap_remove(best);
+    Ok(BesideMasses { prepared, rivals, is_another })
 }
 
-/// What pulls or bends of what was found about a robot.
-fn named(prepared: &Prepared, found: &Sketch) -> Vec<(&'static Effect, Location)> {
-    let candidates = &prepared.model.terms.candidates;
-    let candidate = |term: &Term| &candidates[term.candidate];
-    let terms = loads(&prepared.model, &found.hypothesis).map(candidate);
-    terms.map(|candidate| (candidate.effect, candidate.location.clone())).collect()
+/// A robot with what is found about it.
+struct Found<'c> {
+    prepared: Prepared<'c>,
+    sketch: Sketch,
+    /// True where the robot that is calibrated beside that leaves what it says.
+    holds: bool,
+    /// False where it is the robot as it was given.
+    is_another: bool,
+}
+
+impl<'c> Found<'c> {
+    fn about(mut prepared: Prepared<'c>, is_another: bool) -> Found<'c> {
+        let sketch = sketch(&prepared.model, &prepared.evidence);
+        prepared.evidence.correlated_noise = sketch.correlated_noise;
+        Found { prepared, sketch, holds: false, is_another }
+    }
+
+    /// The likeliest of this one and of so many more that are calibrated beside what is found, one
+    /// after the other: of those that hold, where any does. What is less than `least` probable is
+    /// not followed twice.
+    fn followed(mut self, look: &FirstLook, times: usize, least: f64) -> Result<Found<'c>> {
+        let model = &self.prepared.model;
+        let Sketch { hypothesis, left, .. } = &self.sketch;
+        let again = calibrated_beside(&self.prepared, hypothesis, left)?;
+        self.holds = !matches!(again, Again::Far(_));
+        let is_followed = times == AGAIN || (times > 0 && self.log_probability() >= least);
+        let Some(beside) = again.another().filter(|_| is_followed) else { return Ok(self) };
+        let look = FirstLook { left: Some(model.by_row(left)), carried: beside.carried, ..look.clone() };
+        let next = Prepared::about(model.campaign, model.calibration.clone(), beside.about, &look)?;
+        let next = Found::about(next, true).followed(&look, times - 1, least)?;
+        let worth = |own: &Found| (own.holds, own.log_probability());
+        Ok(if worth(&self) > worth(&next) { self } else { next })
+    }
+
+    fn log_probability(&self) -> f64 {
+        self.sketch.log_probability
+    }
+
+    /// What pulls or bends of it.
+    fn named(&self) -> Vec<(&'static Effect, Location)> {
+        let candidates = &self.prepared.model.terms.candidates;
+        let candidate = |term: &Term| &candidates[term.candidate];
+        let terms = loads(&self.prepared.model, &self.sketch.hypothesis).map(candidate);
+        terms.map(|candidate| (candidate.effect, candidate.location.clone())).collect()
+    }
 }
 
 /// Has what pulls or bends in a diagnosis stand beside what was found about other robots.

@@ -71,6 +71,11 @@ impl<'c> Prepared<'c> {
         Prepared::with_effects(campaign, (calibration.clone(), calibration), &look, false)
     }
 
+    /// True where effects are linear about the robot as it was calibrated, beside nothing else.
+    pub fn is_as_calibrated(&self) -> bool {
+        self.about.deviations == self.model.calibration.deviations
+    }
+
     fn with_effects(
         campaign: &'c Campaign,
         (calibration, about): (Calibration<'c>, Calibration<'c>),

@@ -19,8 +19,10 @@ use crate::section::Section;
 const OTHER: f64 = 1.1;
 /// Ln of the prior of another rod.
 const OTHER_ROD: f64 = -2.0;
-/// Of the rods that are tried in full, how many there are at most, and how far behind the given one
-/// the slopes may see them.
+/// Of the rods that are tried in full, which pay for how far they are off, by how much they may be
+/// (twice what the wall of a thin tube makes likely), how many there are at most, and how far
+/// behind the given one the slopes may see them.
+const OTHER_IN_FULL: f64 = 1.25;
 const MOST_OTHERS: usize = 4;
 const FAR_BEHIND: f64 = 10.0;
 
@@ -199,7 +201,7 @@ pub(super) fn likely(
     let known = known.filter_map(|other| {
         let verdict = verdict_of(&other.rod)?;
         // of one file's numbers none is nearer by chance
-        let within: f64 = if other.effect == &ROD_MISTAKE { OTHER } else { BESIDE };
+        let within: f64 = if other.effect == &ROD_MISTAKE { OTHER_IN_FULL } else { BESIDE };
         let is_likely = verdict.log_scale_of_known.abs() <= within.ln()
             && verdict.log_evidence > own.log_evidence - FAR_BEHIND;
         is_likely.then_some((verdict.log_evidence, other))
@@ -217,4 +219,26 @@ fn is_alike(a: &Rod, b: &Rod) -> bool {
         && tubes(a) == tubes(b)
         && a.joints == b.joints
         && a.sleeves == b.sleeves
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rods whose numbers are twice as far off as their files make likely are compared in full, and
+    /// those are not that are no likelier than what a unit would have to mend.
+    #[test]
+    fn rods_a_fifth_off_are_tried_in_full() {
+        let read = |file: &str| Rod::read(file.as_ref()).unwrap();
+        let (given, other) = (read("rods/2.toml"), read("rods/5.toml"));
+        let tried = |factor: f64| {
+            let verdict = |rod: &Rod| {
+                let log_scale = if rod.l2 == other.l2 { factor.ln() } else { 0.0 };
+                Some(Verdict { log_evidence: 0.0, log_scale, log_scale_of_known: log_scale })
+            };
+            let found = likely(&given, &[("5.toml".to_owned(), other.clone())], verdict);
+            found.iter().any(|own| own.effect == &ROD_MISTAKE)
+        };
+        assert_eq!([0.7, 0.85, 1.0, 1.2, 1.4].map(tried), [false, true, true, true, false]);
+    }
 }

@@ -67,8 +67,18 @@ pub(super) fn described(
     let (all, remainder) = (known.sites, known.remainder);
     let Data { evidence, size, .. } = known.data;
     let best = class.first()?;
-    let measured: Vec<Measured> =
+    let mut measured: Vec<Measured> =
         class.iter().map(|law| Measured::of(remainder, &all[law.choice.site], law, size)).collect();
+    let site_of = |law: &Scanned| &all[law.choice.site];
+    let is_kin = |law: &&&Scanned| {
+        law.choice.form.is_kin(best.choice.form)
+            && law.choice.memory.is(best.choice.memory)
+            && site_of(law).variable == site_of(best).variable
+    };
+    let kin: Vec<(&Scanned, &Site)> = class.iter().filter(is_kin).map(|law| (*law, site_of(law))).collect();
+    if let Some(own) = measured.first_mut().filter(|_| kin.len() > 1) {
+        own.average(&kin);
+    }
     let rivals = class.iter().zip(&measured).zip(held_out).skip(1);
     let rivals: Vec<LawRival> = rivals
         .map(|((law, measured), &held_out)| LawRival {

@@ -94,6 +94,7 @@ fn of_law(law: &Law, number: usize, subject: &LawSubject, note: &LawNote) -> Val
         "form": law.form.name(),
         "memory": law.memory.name(),
         "constants": law.constants().map(constant).collect::<Vec<_>>(),
+        "intervals_of_this_form_alone": is_of_form_alone(law),
         "correlation": law.correlation.row_iter().map(|row| row.iter().copied().collect()).collect::<Vec<Vec<f64>>>(),
         "range": [low / variable.si, high / variable.si],
         "explains_rms_um": um(law.explains),
@@ -269,7 +270,20 @@ fn alternatives(law: &Law, subject: &LawSubject) -> Option<String> {
     let said: Vec<String> = law.rivals.iter().take(SAID).map(|rival| called(rival, law)).collect();
     let more = if law.rivals.len() > SAID { ", or others" } else { "" };
     let these = subject.noun;
-    Some(format!("It may as well be: {}{more}. These {these} cannot distinguish them.", said.join("; or ")))
+    let of_form = match is_of_form_alone(law) {
+        true => " Its numbers and their intervals are those of its own form: another form has others.",
+        false => "",
+    };
+    Some(format!(
+        "It may as well be: {}{more}. These {these} cannot distinguish them.{of_form}",
+        said.join("; or ")
+    ))
+}
+
+/// True where these data do not distinguish it from a form whose numbers are not its own: no
+/// interval of a number says anything of that one.
+fn is_of_form_alone(law: &Law) -> bool {
+    law.rivals.iter().any(|rival| !rival.form.is_kin(law.form) || !rival.memory.is(law.memory))
 }
 
 /// The measurement that would distinguish a law from its rivals, in a sentence.

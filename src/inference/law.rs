@@ -19,6 +19,7 @@
 //!
 //! A law is a proposal beside what is unexplained. It changes no finding.
 
+mod another_way;
 mod beyond;
 mod bouc_wen;
 mod choice;

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::another_way::another_way;
 use super::beyond::{apart, comparable, further};
 use super::choice::Choice;
 use super::measured::Measured;
@@ -113,6 +114,7 @@ pub(super) fn described(
         rivals,
         next: None,
         further: None,
+        another_way: None,
         points: Vec::new(),
         curve: Vec::new(),
         more: None,
@@ -125,6 +127,7 @@ pub(super) fn described(
     law.curve = smooth(&law.points, law.site.directions.len());
     law.next = next(&law);
     law.further = further(&law, best, remainder, size);
+    law.another_way = another_way(&law, best, (remainder, size));
     Some(law)
 }
 

@@ -6,10 +6,16 @@ use super::choice::Choice;
 use super::grid;
 use super::peak::{Peak, WIDEST};
 use super::posterior::Posterior;
-use super::scan::{FAR, MISSED, SAME};
 use super::site::Site;
 use crate::inference::search::selection::APART;
 
+/// Part of the evidence of a law that a first look may miss for each of its numbers that is not
+/// linear: its peak is narrow.
+pub(super) const MISSED: f64 = 0.25;
+/// How far (ln) behind the likeliest other values of it may be at least, and how near two of them
+/// are the same.
+pub(super) const FAR: f64 = 30.0;
+pub(super) const SAME: f64 = 0.01;
 /// Places of a first look at a wave that changes from which on it is likeliest elsewhere: even
 /// levels show it at several frequencies, as they show any wave.
 const STARTS: usize = 6;
@@ -58,8 +64,8 @@ impl Looked {
     }
 
     /// Where all of its numbers are likeliest, and coordinates of the first one where they are not
-    /// less likely by the odds of a rival; of waves that explain the same the slowest has the widest
-    /// peak.
+    /// less likely by the odds of a rival; of waves that explain the same the slowest has the
+    /// widest peak.
     pub fn peak(&self, evidence: &dyn Fn(&[DVector<f64>]) -> Vec<f64>) -> (Peak, Vec<f64>) {
         let ranges = [vec![self.posterior.ends()], self.choice.shape_ranges()].concat();
         let uphill = |start: &DVector<f64>| {

@@ -5,9 +5,9 @@ use nalgebra::{DMatrix, DVector};
 use super::choice::{Choice, LawColumns};
 use super::constant::{Constant, OpenEnd};
 use super::form::{Form, FormConstant};
-use super::looked::at_point;
+use super::looked::{SAME, at_point};
 use super::remainder::Remainder;
-use super::scan::{SAME, Scanned};
+use super::scan::Scanned;
 use super::shape::OfShape;
 use super::site::Site;
 use crate::inference::search::selection::APART;
@@ -32,9 +32,9 @@ pub(super) struct Measured {
 }
 
 impl Measured {
-    /// Intervals of its numbers that are not linear as wide as laws make them of which one holds the
-    /// other, and that data do not distinguish: each number is the same in all of them, and each
-    /// counts by its probability. The first is the law itself.
+    /// Intervals of its numbers that are not linear as wide as laws make them of which one
+    /// holds the other, and that data do not distinguish: each number is the same in all of
+    /// them, and each counts by its probability. The first is the law itself.
     pub fn average(&mut self, kin: &[(&Scanned, &Site)]) {
         let Some((own, _)) = kin.first() else { return };
         for constant in self.constant.iter_mut().map(|(_, own)| own).chain(&mut self.of_shape) {
@@ -89,8 +89,8 @@ impl Measured {
     }
 }
 
-/// Values of a number of this name, each of which stands for as much of the posterior; nothing where
-/// a law has none.
+/// Values of a number of this name, each of which stands for as much of the posterior; nothing
+/// where a law has none.
 fn numbers(law: &Scanned, site: &Site, name: &str) -> Vec<f64> {
     let value = |(choice, u): (Choice, f64)| {
         let of_form = choice.constant().filter(|what| named(*what) == name);

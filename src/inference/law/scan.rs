@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 use std::f64::consts::PI;
 
 use super::choice::Choice;
-use super::looked::{Looked, at_point};
+use super::looked::{FAR, Looked, MISSED, SAME, at_point};
 use super::peak::Peak;
 use super::posterior::Posterior;
 use super::remainder::Remainder;
@@ -17,14 +17,9 @@ use crate::parallel::in_parallel;
 const CURVE: usize = 6;
 /// Laws whose evidence at the best point is so far (ln) behind the best need no closer look.
 const BEHIND: f64 = 12.0;
-/// Part of the evidence of a law that a first look may miss for each of its numbers that is not
-/// linear: its peak is narrow.
-pub(super) const MISSED: f64 = 0.25;
 /// Values of the number that is not linear, at most, that are tried with the variable as it is with
-/// each; how far (ln) behind the likeliest they may be at least; how near two of them are the same.
+/// each.
 const MOST_TRIED: usize = 6;
-pub(super) const FAR: f64 = 30.0;
-pub(super) const SAME: f64 = 0.01;
 /// Of so many laws, the likeliest, all else is fitted anew.
 const REFITTED: usize = 16;
 

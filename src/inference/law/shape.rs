@@ -92,8 +92,8 @@ impl Choice {
 }
 
 impl Form {
-    /// A corner is what most things have that touch, and most waves go on as they began; how else is
-    /// known of few.
+    /// A corner is what most things have that touch, and most waves go on as they began; how else
+    /// is known of few.
     fn share(self) -> f64 {
         if self.shape().is_empty() { 1.0 } else { NO_CORNER }
     }

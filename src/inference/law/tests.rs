@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 mod kin;
+mod loops;
 mod waves;
 
 use super::*;

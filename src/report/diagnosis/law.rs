@@ -108,6 +108,10 @@ fn of_law(law: &Law, number: usize, subject: &LawSubject, note: &LawNote) -> Val
             "apart_um": um(apart),
             "may_be_used": law.holds_beyond(),
         })),
+        "another_way": law.another_way.map(|apart| json!({
+            "apart_um": um(apart),
+            "may_be_used": law.holds_another_way(),
+        })),
         "more_left": law.more.as_ref().map(|(location, variable)| {
             json!({ "location": location.to_string(), "place": place(location), "variable": variable.name, "unit": variable.unit })
         }),
@@ -325,8 +329,17 @@ fn range(law: &Law, subject: &LawSubject, note: &LawNote) -> String {
         }
         _ => String::new(),
     };
+    let elsewhere = match law.another_way.filter(|_| law.holds_another_way() == Some(false)) {
+        Some(apart) => format!(
+            " Where the {} turns round elsewhere than here, these {} leave up to {} µm open.",
+            variable.name,
+            subject.noun,
+            um(apart)
+        ),
+        None => String::new(),
+    };
     format!(
-        "It is a proposal from {} between {} and {}; beyond that it is an extrapolation{beyond}. It changes no finding{written}.",
+        "It is a proposal from {} between {} and {}; beyond that it is an extrapolation{beyond}.{elsewhere} It changes no finding{written}.",
         subject.noun,
         show(low, 3),
         with_unit(show(high, 3), variable.unit)

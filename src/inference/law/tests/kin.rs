@@ -2,8 +2,9 @@
 
 use super::*;
 
-/// The interval of an exponent is that of all forms that the data do not distinguish, whose exponent
-/// is the same number: of a power with a gap before it as likely as one without it holds both.
+/// The interval of an exponent is that of all forms that the data do not distinguish, whose
+/// exponent is the same number: of a power with a gap before it as likely as one without it
+/// holds both.
 #[test]
 fn the_interval_of_an_exponent_is_that_of_its_kin() {
     let mut met = 0;

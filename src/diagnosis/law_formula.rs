@@ -45,6 +45,14 @@ pub(super) fn formula(law: &Law, x: &str, is_signed: bool, direction: usize) -> 
         Form::Settling => format!("{a}*exp(-{size}/{corner}) + {b}"),
         Form::Logarithm => format!("{a}*{sign}ln(1 + {size}/{corner})"),
         Form::Harmonic => format!("{a}*(cos(2*pi*{x}/P) - 1) + {b}*sin(2*pi*{x}/P)"),
+        Form::Chirp(_) => {
+            let turns = format!("2*pi*{x}/P*(1 + q*({x}/{largest:?} - 1))");
+            format!("{a}*(cos({turns}) - 1) + {b}*sin({turns})")
+        }
+        Form::Swell(_) => {
+            let grown = format!("(1 + g*{size}/{largest:?})");
+            format!("{a}*({grown}*cos(2*pi*{x}/P) - 1) + {b}*{grown}*sin(2*pi*{x}/P)")
+        }
         Form::Oscillation => format!("{a}*cos(2*pi*{x}/P) + {b}*sin(2*pi*{x}/P) + {c}"),
         Form::Polynomial(_) => powers(),
     };

@@ -19,6 +19,7 @@
 //!
 //! A law is a proposal beside what is unexplained. It changes no finding.
 
+mod another_way;
 mod beyond;
 mod bouc_wen;
 mod choice;
@@ -26,7 +27,10 @@ mod constant;
 mod described;
 mod folds;
 mod form;
+mod grid;
 mod left;
+mod lists;
+mod looked;
 mod measured;
 mod memory;
 mod pairs;

@@ -53,6 +53,8 @@ impl Choice {
                             | Form::PowerBeyond(_)
                             | Form::Rough(_)
                             | Form::Harmonic
+                            | Form::Chirp(_)
+                            | Form::Swell(_)
                             | Form::Oscillation
                             | Form::Pull
                             | Form::PullBelow

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::another_way::another_way;
 use super::beyond::{apart, comparable, further};
 use super::choice::Choice;
 use super::measured::Measured;
@@ -67,8 +68,18 @@ pub(super) fn described(
     let (all, remainder) = (known.sites, known.remainder);
     let Data { evidence, size, .. } = known.data;
     let best = class.first()?;
-    let measured: Vec<Measured> =
+    let mut measured: Vec<Measured> =
         class.iter().map(|law| Measured::of(remainder, &all[law.choice.site], law, size)).collect();
+    let site_of = |law: &Scanned| &all[law.choice.site];
+    let is_kin = |law: &&&Scanned| {
+        law.choice.form.is_kin(best.choice.form)
+            && law.choice.memory.is(best.choice.memory)
+            && site_of(law).variable == site_of(best).variable
+    };
+    let kin: Vec<(&Scanned, &Site)> = class.iter().filter(is_kin).map(|law| (*law, site_of(law))).collect();
+    if let Some(own) = measured.first_mut().filter(|_| kin.len() > 1) {
+        own.average(&kin);
+    }
     let rivals = class.iter().zip(&measured).zip(held_out).skip(1);
     let rivals: Vec<LawRival> = rivals
         .map(|((law, measured), &held_out)| LawRival {
@@ -103,6 +114,7 @@ pub(super) fn described(
         rivals,
         next: None,
         further: None,
+        another_way: None,
         points: Vec::new(),
         curve: Vec::new(),
         more: None,
@@ -115,6 +127,7 @@ pub(super) fn described(
     law.curve = smooth(&law.points, law.site.directions.len());
     law.next = next(&law);
     law.further = further(&law, best, remainder, size);
+    law.another_way = another_way(&law, best, (remainder, size));
     Some(law)
 }
 

@@ -1,5 +1,5 @@
 //! Forms of a law: functions of a scaled variable, with one number at most that is not linear, or
-//! two: where it begins, and its exponent or width there.
+//! two: where it begins, and its exponent or width there; a period, and how the wave changes.
 
 use std::f64::consts::TAU;
 
@@ -35,6 +35,11 @@ pub enum Form {
     Logarithm,
     /// a·(cos(2πf·ξ) − 1) + b·sin(2πf·ξ): readings are offsets from what was read at zero.
     Harmonic,
+    /// a·(cos φ − 1) + b·sin φ, φ = 2πf·ξ·(1 + q·(ξ − 1)) of this q: a wave whose frequency goes
+    /// evenly from f·(1 − q) at zero to f·(1 + q) at X.
+    Chirp(f64),
+    /// a·((1 + g·|ξ|)·cos(2πf·ξ) − 1) + b·(1 + g·|ξ|)·sin(2πf·ξ) of this g: a wave that grows.
+    Swell(f64),
     /// a·cos(2πf·ξ) + b·sin(2πf·ξ) + c: of time, for nobody knows when the zero was taken.
     Oscillation,
     /// k·(1/(ξ₀ − ξ)² − 1/ξ₀²): a pull, from zero on, by what is at ξ₀ beyond all data.
@@ -58,7 +63,7 @@ pub enum FormConstant {
     Scale,
     /// ξ₀ of a pull: a value of the variable beyond the data.
     Pole,
-    /// Period of a wave, 1/f, of the variable.
+    /// Period of a wave, 1/f, of the variable; the mean one from zero to X where it changes.
     Period,
     /// Half the width of a play, of the variable.
     Play,
@@ -68,28 +73,8 @@ pub enum FormConstant {
     Lag,
 }
 
-/// Exponents that a law may have: roots to fourth powers.
-const EXPONENTS: (f64, f64) = (0.2, 4.0);
-/// Scale of an approach or a decay, as a share of X: below it is a step, above a straight line.
-const APPROACH: (f64, f64) = (0.03, 2.0);
-/// That of a logarithm.
-const LOGARITHM: (f64, f64) = (1e-3, 1.0);
-/// Where a saturation may begin.
-const SATURATION: (f64, f64) = (0.05, 0.98);
-/// Where something pulls, from the end of the data on, as a share of their range.
-const AWAY: (f64, f64) = (0.05, 3.0);
 /// Least square of a distance, as a share of X².
 const NEAREST: f64 = 1e-6;
-/// Points of a first look at a number that is not linear.
-const POINTS: usize = 21;
-/// Cycles over the range of the variable: fewer are a bend, more than so many nobody looks for.
-const CYCLES: (f64, f64) = (1.0, 60.0);
-/// Distance of two frequencies in cycles over the range: a wave of one is still half in step with
-/// that of the other.
-const APART: f64 = 0.15;
-/// Levels of the variable from which on waves are looked for.
-const LEVELS_OF_A_WAVE: usize = 6;
-
 impl Form {
     /// A power beyond a threshold, of the exponent of a Hertzian contact over its approach.
     pub const CONTACT: Form = Form::PowerBeyond(1.5);
@@ -97,95 +82,11 @@ impl Form {
     /// A rounded threshold of some width.
     pub const ROUGH: Form = Form::Rough(0.1);
 
-    /// All of them.
-    pub const ALL: [Form; 20] = [
-        Form::Power,
-        Form::PowerAfterGap,
-        Form::Saturation,
-        Form::Rounded,
-        Form::Threshold,
-        Form::CONTACT,
-        Form::ROUGH,
-        Form::Step,
-        Form::Approach,
-        Form::Decay,
-        Form::Settling,
-        Form::Logarithm,
-        Form::Harmonic,
-        Form::Oscillation,
-        Form::Pull,
-        Form::PullBelow,
-        Form::PullAbove,
-        Form::Polynomial(1),
-        Form::Polynomial(2),
-        Form::Polynomial(3),
-    ];
+    /// A wave whose frequency changes by something.
+    pub const CHIRP: Form = Form::Chirp(0.1);
 
-    /// Of a load or what grows with it, from zero on.
-    pub const FROM_ZERO: &[Form] = &[
-        Form::Power,
-        Form::PowerAfterGap,
-        Form::Saturation,
-        Form::Rounded,
-        Form::Threshold,
-        Form::CONTACT,
-        Form::ROUGH,
-        Form::Step,
-        Form::Approach,
-        Form::Decay,
-        Form::Settling,
-        Form::Logarithm,
-        Form::Harmonic,
-        Form::Pull,
-        Form::Polynomial(1),
-        Form::Polynomial(2),
-        Form::Polynomial(3),
-    ];
-
-    /// What gives way from zero on.
-    pub const GIVING_WAY: &[Form] = &[
-        Form::Power,
-        Form::PowerAfterGap,
-        Form::Saturation,
-        Form::Rounded,
-        Form::Threshold,
-        Form::CONTACT,
-        Form::ROUGH,
-        Form::Step,
-        Form::Approach,
-        Form::Logarithm,
-        Form::Polynomial(1),
-        Form::Polynomial(2),
-        Form::Polynomial(3),
-    ];
-
-    /// From a start on: time, order.
-    pub const SINCE_A_START: &[Form] = &[
-        Form::Threshold,
-        Form::Step,
-        Form::Approach,
-        Form::Decay,
-        Form::Logarithm,
-        Form::Harmonic,
-        Form::Polynomial(1),
-        Form::Polynomial(2),
-        Form::Polynomial(3),
-    ];
-
-    /// From anywhere on, or with two signs.
-    pub const FROM_ANYWHERE: &[Form] =
-        &[Form::Threshold, Form::Step, Form::Polynomial(1), Form::Polynomial(2), Form::Polynomial(3)];
-
-    /// Of a position: something may pull at either end.
-    pub const OF_A_POSITION: &[Form] = &[
-        Form::Threshold,
-        Form::Step,
-        Form::PullBelow,
-        Form::PullAbove,
-        Form::Polynomial(1),
-        Form::Polynomial(2),
-        Form::Polynomial(3),
-    ];
+    /// A wave whose amplitude changes by something.
+    pub const SWELL: Form = Form::Swell(1.0);
 
     /// For people and JSON.
     pub fn name(self) -> &'static str {
@@ -203,6 +104,8 @@ impl Form {
             Form::Settling => "exponential decay to a level",
             Form::Logarithm => "logarithm",
             Form::Harmonic | Form::Oscillation => "harmonic",
+            Form::Chirp(_) => "harmonic of a changing period",
+            Form::Swell(_) => "harmonic of a changing amplitude",
             Form::Pull | Form::PullBelow | Form::PullAbove => "inverse square of a distance",
             Form::Polynomial(1) => "straight line",
             Form::Polynomial(2) => "polynomial of the second degree",
@@ -213,9 +116,25 @@ impl Form {
     /// True for the same, whatever its exponent or width.
     pub fn is(self, other: Form) -> bool {
         match (self, other) {
-            (Form::PowerBeyond(_), Form::PowerBeyond(_)) | (Form::Rough(_), Form::Rough(_)) => true,
+            (Form::PowerBeyond(_), Form::PowerBeyond(_))
+            | (Form::Rough(_), Form::Rough(_))
+            | (Form::Chirp(_), Form::Chirp(_))
+            | (Form::Swell(_), Form::Swell(_)) => true,
             _ => self == other,
         }
+    }
+
+    /// True where one of two forms is the other for some of its numbers: what both are known by is
+    /// one number then, as the exponent of a power is with a gap before it and without.
+    pub fn is_kin(self, other: Form) -> bool {
+        let holds = |wider: Form, form: Form| match (wider, form) {
+            (Form::PowerAfterGap | Form::PowerBeyond(_), Form::Power)
+            | (Form::PowerBeyond(_) | Form::Rough(_), Form::Threshold)
+            | (Form::Settling, Form::Decay) => true,
+            (wider, Form::Harmonic) => wider.is_wave(),
+            (wider, form) => wider.is(form),
+        };
+        holds(self, other) || holds(other, self)
     }
 
     /// True for one that has neither a corner nor waves: two of them are no two laws.
@@ -227,13 +146,18 @@ impl Form {
 
     /// True for one with a period.
     pub fn is_wave(self) -> bool {
-        matches!(self, Form::Harmonic | Form::Oscillation)
+        matches!(self, Form::Harmonic | Form::Chirp(_) | Form::Swell(_) | Form::Oscillation)
+    }
+
+    /// How many times as large as at zero a wave is at ξ.
+    fn swell(self, xi: f64) -> f64 {
+        if let Form::Swell(g) = self { 1.0 + g * xi.abs() } else { 1.0 }
     }
 
     /// How many functions it has.
     pub fn count(self) -> usize {
         match self {
-            Form::PowerAfterGap | Form::Harmonic | Form::Settling => 2,
+            Form::PowerAfterGap | Form::Harmonic | Form::Chirp(_) | Form::Swell(_) | Form::Settling => 2,
             Form::Oscillation => 3,
             Form::Polynomial(degree) => degree as usize,
             _ => 1,
@@ -251,7 +175,9 @@ impl Form {
                 Some(FormConstant::Scale)
             }
             Form::Pull | Form::PullBelow | Form::PullAbove => Some(FormConstant::Pole),
-            Form::Harmonic | Form::Oscillation => Some(FormConstant::Period),
+            Form::Harmonic | Form::Chirp(_) | Form::Swell(_) | Form::Oscillation => {
+                Some(FormConstant::Period)
+            }
             Form::Polynomial(_) => None,
         }
     }
@@ -274,9 +200,11 @@ impl Form {
             Form::Decay => one(odd(&|xi| (-xi / s).exp())),
             Form::Settling => [odd(&|xi| (-xi / s).exp()), odd(&|_| 1.0), 0.0],
             Form::Logarithm => one(odd(&|xi| (xi / s).ln_1p())),
-            Form::Harmonic => {
-                let (sin, cos) = (TAU * s * xi).sin_cos();
-                [cos - 1.0, sin, 0.0]
+            Form::Harmonic | Form::Chirp(_) | Form::Swell(_) => {
+                let faster = if let Form::Chirp(q) = self { 1.0 + q * (xi - 1.0) } else { 1.0 };
+                let (sin, cos) = (TAU * s * xi * faster).sin_cos();
+                let size = self.swell(xi);
+                [size * cos - 1.0, size * sin, 0.0]
             }
             Form::Oscillation => {
                 let (sin, cos) = (TAU * s * xi).sin_cos();
@@ -308,6 +236,8 @@ impl Form {
             | Form::Logarithm
             | Form::Rounded
             | Form::Harmonic
+            | Form::Chirp(_)
+            | Form::Swell(_)
             | Form::Oscillation => true,
             Form::Saturation
             | Form::Threshold
@@ -318,46 +248,6 @@ impl Form {
             | Form::PullBelow
             | Form::PullAbove
             | Form::Polynomial(_) => false,
-        }
-    }
-
-    /// Coordinates of a first look at s over a variable from `low` to `high` (shares of X) with so
-    /// many levels; nothing where these levels do not determine the form.
-    pub fn grid(self, (low, high): (f64, f64), levels: usize) -> Vec<f64> {
-        let between = |(a, b): (f64, f64), count: usize| -> Vec<f64> {
-            (0..count).map(|k| a + (b - a) * k as f64 / (count - 1) as f64).collect()
-        };
-        let logs = |(a, b): (f64, f64)| between((a.ln(), b.ln()), POINTS);
-        let away = || {
-            let (first, last) = (AWAY.0.ln(), AWAY.1.ln());
-            (0..POINTS).map(move |k| (first + (last - first) * k as f64 / (POINTS - 1) as f64).exp())
-        };
-        let constants = self.count() + usize::from(self.constant().is_some()) + self.shape().len();
-        if levels <= constants {
-            return Vec::new();
-        }
-        match self {
-            Form::Power | Form::PowerAfterGap => logs(EXPONENTS),
-            Form::Approach | Form::Decay | Form::Settling | Form::Rounded => logs(APPROACH),
-            Form::Pull if low < 0.0 => Vec::new(),
-            Form::Pull | Form::PullAbove => away().map(|distance| high + distance * (high - low)).collect(),
-            Form::PullBelow => away().rev().map(|distance| low - distance * (high - low)).collect(),
-            Form::Logarithm => logs(LOGARITHM),
-            Form::Saturation => between(SATURATION, POINTS),
-            Form::Threshold | Form::PowerBeyond(_) | Form::Rough(_) | Form::Step => {
-                let inset = 0.5 / levels.min(POINTS) as f64 * (high - low);
-                between((low + inset, high - inset), POINTS)
-            }
-            Form::Harmonic | Form::Oscillation => {
-                // levels at even distances show one wave as well as another: all of them compete
-                let count = ((CYCLES.1 - CYCLES.0) / APART) as usize;
-                let frequency = |k: usize| (CYCLES.0 + APART * k as f64) / (high - low);
-                match levels >= LEVELS_OF_A_WAVE {
-                    true => (0..=count).map(|k| frequency(k).ln()).collect(),
-                    false => Vec::new(),
-                }
-            }
-            Form::Polynomial(_) => vec![0.0],
         }
     }
 }
@@ -405,21 +295,29 @@ mod tests {
         // a quarter of a period on, the cosine is gone and the sine whole
         let [cos, sin, _] = Form::Harmonic.functions(0.25, 1.0);
         assert!((cos + 1.0).abs() < 1e-15 && (sin - 1.0).abs() < 1e-15);
+        // four waves of 1 per ξ at zero are five at X: f = 4.5, q = 1/9
+        let chirp = |xi: f64| Form::Chirp(1.0 / 9.0).functions(xi, 4.5);
+        let turns = |xi: f64| TAU * (4.0 * xi + 0.5 * xi * xi);
+        assert!((chirp(0.7)[0] - (turns(0.7).cos() - 1.0)).abs() < 1e-12 && chirp(0.0) == [0.0; 3]);
+        assert!((chirp(1.3)[1] - turns(1.3).sin()).abs() < 1e-12);
+        // half of a period on, the wave has grown by half
+        let [cos, sin, _] = Form::Swell(1.0).functions(0.5, 1.0);
+        assert!((cos + 2.5).abs() < 1e-15 && sin.abs() < 1e-15);
         assert_eq!(Form::Polynomial(3).functions(2.0, 0.0), [2.0, 4.0, 8.0]);
+    }
+
+    #[test]
+    fn a_form_is_kin_of_what_it_holds() {
+        assert!(Form::Power.is_kin(Form::CONTACT) && Form::PowerAfterGap.is_kin(Form::Power));
+        assert!(Form::CHIRP.is_kin(Form::Harmonic) && Form::Rough(0.1).is_kin(Form::Rough(0.2)));
+        // what both call a scale is not one number
+        assert!(!Form::Approach.is_kin(Form::Logarithm) && !Form::Power.is_kin(Form::Logarithm));
     }
 
     #[test]
     fn corners_and_waves_are_laws_beside_others() {
         let gradual = Form::ALL.into_iter().filter(|form| form.is_gradual()).count();
-        assert_eq!(gradual, Form::ALL.len() - 6);
+        assert_eq!(gradual, Form::ALL.len() - 8);
         assert!(Form::Power.is_gradual() && !Form::Threshold.is_gradual() && !Form::Harmonic.is_gradual());
-    }
-
-    #[test]
-    fn a_form_needs_more_levels_than_it_has_constants() {
-        let is_tried = |form: Form, levels: usize| !form.grid((0.0, 1.0), levels).is_empty();
-        assert!(!is_tried(Form::Power, 2) && is_tried(Form::Power, 3));
-        assert!(!is_tried(Form::Polynomial(3), 3) && is_tried(Form::Polynomial(3), 4));
-        assert!(!is_tried(Form::Harmonic, 3) && is_tried(Form::Harmonic, 12));
     }
 }

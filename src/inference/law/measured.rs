@@ -5,8 +5,9 @@ use nalgebra::{DMatrix, DVector};
 use super::choice::{Choice, LawColumns};
 use super::constant::{Constant, OpenEnd};
 use super::form::{Form, FormConstant};
+use super::looked::{SAME, at_point};
 use super::remainder::Remainder;
-use super::scan::{SAME, Scanned, at_point};
+use super::scan::Scanned;
 use super::shape::OfShape;
 use super::site::Site;
 use crate::inference::search::selection::APART;
@@ -14,6 +15,8 @@ use crate::statistics::{HALF_95, student_t_quantile};
 
 /// Values of s by which its posterior counts in the amplitudes' intervals.
 const DRAWS: usize = 24;
+/// Values of a number by which each of several laws counts in its interval.
+const OF_KIN: usize = 200;
 /// Most other values of s that are reported.
 const MOST_OTHERS: usize = 5;
 
@@ -29,6 +32,32 @@ pub(super) struct Measured {
 }
 
 impl Measured {
+    /// Intervals of its numbers that are not linear as wide as laws make them of which one
+    /// holds the other, and that data do not distinguish: each number is the same in all of
+    /// them, and each counts by its probability. The first is the law itself.
+    pub fn average(&mut self, kin: &[(&Scanned, &Site)]) {
+        let Some((own, _)) = kin.first() else { return };
+        for constant in self.constant.iter_mut().map(|(_, own)| own).chain(&mut self.of_shape) {
+            let mut all: Vec<(f64, f64)> = Vec::new();
+            for (law, site) in kin {
+                let values: Vec<f64> = numbers(law, site, &constant.name);
+                let share = (law.log_odds - own.log_odds).exp() / values.len() as f64;
+                all.extend(values.into_iter().map(|value| (value, share)));
+            }
+            all.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let whole: f64 = all.iter().map(|(_, share)| share).sum();
+            let below = |p: f64| {
+                let mut sum = 0.0;
+                all.iter().find_map(|(value, share)| {
+                    sum += share;
+                    (sum >= p * whole).then_some(*value)
+                })
+            };
+            constant.low = below(0.025).map_or(constant.low, |low| low.min(constant.low));
+            constant.high = below(0.975).map_or(constant.high, |high| high.max(constant.high));
+        }
+    }
+
     /// At each s that counts the amplitudes are normal: together
     ///
     /// ```text
@@ -57,6 +86,31 @@ impl Measured {
             correlation: correlation(&covariance),
             values: (mode, choice.at(best)),
         }
+    }
+}
+
+/// Values of a number of this name, each of which stands for as much of the posterior; nothing
+/// where a law has none.
+fn numbers(law: &Scanned, site: &Site, name: &str) -> Vec<f64> {
+    let value = |(choice, u): (Choice, f64)| {
+        let of_form = choice.constant().filter(|what| named(*what) == name);
+        let of_shape = || choice.of_shape(widths(site, choice, u)).into_iter().find(|own| own.name == name);
+        of_form.map(|what| along(site, what, choice.at(u))).or_else(|| of_shape().map(|own| own.value))
+    };
+    law.even(OF_KIN).into_iter().filter_map(value).collect()
+}
+
+/// What the number that is not linear is called.
+fn named(what: FormConstant) -> &'static str {
+    match what {
+        FormConstant::Exponent => "exponent",
+        FormConstant::Corner => "corner",
+        FormConstant::Scale => "scale",
+        FormConstant::Pole => "place of the pull",
+        FormConstant::Play => "half width",
+        FormConstant::Yield => "yield",
+        FormConstant::Period => "period",
+        FormConstant::Lag => "time constant",
     }
 }
 
@@ -133,7 +187,7 @@ fn names(site: &Site, form: Form) -> Vec<(String, String, String, f64)> {
         (unit, result.si * (site.largest() / variable.si).powi(i32::from(power)))
     };
     let of_form: Vec<(&str, &str, i8)> = match form {
-        Form::Harmonic => vec![("a", "cosine", 0), ("b", "sine", 0)],
+        Form::Harmonic | Form::Chirp(_) | Form::Swell(_) => vec![("a", "cosine", 0), ("b", "sine", 0)],
         Form::Oscillation => vec![("a", "cosine", 0), ("b", "sine", 0), ("c", "level", 0)],
         Form::Threshold | Form::Rough(_) => vec![("k", "slope", 1)],
         Form::PowerBeyond(_) => vec![("a", "value at the largest", 0)],
@@ -203,15 +257,14 @@ fn shape(site: &Site, law: &Scanned, what: FormConstant) -> Constant {
     let unit = &site.variable;
     let at = |u: f64| along(site, what, law.choice.at(u));
     let variable = unit.symbol;
-    let (symbol, name, unit) = match what {
-        FormConstant::Exponent => ("p".to_owned(), "exponent", ""),
-        FormConstant::Corner => (format!("{variable}_0"), "corner", unit.unit),
-        FormConstant::Scale => (format!("{variable}_0"), "scale", unit.unit),
-        FormConstant::Pole => (format!("{variable}_0"), "place of the pull", unit.unit),
-        FormConstant::Play => ("r".to_owned(), "half width", unit.unit),
-        FormConstant::Yield => ("r".to_owned(), "yield", unit.unit),
-        FormConstant::Period => ("P".to_owned(), "period", unit.unit),
-        FormConstant::Lag => ("tau".to_owned(), "time constant", "s"),
+    let (symbol, unit) = match what {
+        FormConstant::Exponent => ("p".to_owned(), ""),
+        FormConstant::Corner | FormConstant::Scale | FormConstant::Pole => {
+            (format!("{variable}_0"), unit.unit)
+        }
+        FormConstant::Play | FormConstant::Yield => ("r".to_owned(), unit.unit),
+        FormConstant::Period => ("P".to_owned(), unit.unit),
+        FormConstant::Lag => ("tau".to_owned(), "s"),
     };
     // times and lengths that are far longer than the data are all alike
     let is_scale = matches!(what, FormConstant::Scale | FormConstant::Lag);
@@ -234,7 +287,7 @@ fn shape(site: &Site, law: &Scanned, what: FormConstant) -> Constant {
     }
     Constant {
         symbol,
-        name: name.into(),
+        name: named(what).into(),
         unit: unit.into(),
         value,
         low: ends[0].min(ends[1]).min(value),

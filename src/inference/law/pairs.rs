@@ -1,9 +1,10 @@
 //! Where to begin with two laws that only together are what the data show.
 //!
 //! Two time constants at one place make a curve together. The likeliest law alone
-//! has a number between both, beside which the second one is no other. So all pairs of first looks
-//! at what is remembered at a place are tried together; the better one of the likeliest pair is
-//! the first law.
+//! has a number between both, beside which the second one is no other. Two waves of near periods
+//! beat, as one does that grows, and are in step and out of it, as one does whose period changes.
+//! So all pairs of first looks at what is remembered at a place, and at waves about one that
+//! changes, are tried together; the better one of the likeliest pair is the first law.
 
 use nalgebra::DMatrix;
 
@@ -24,6 +25,11 @@ const FARTHEST: f64 = 3.0;
 const SETTLED: f64 = 0.05;
 /// Sites that are tried: those of so many laws, the likeliest.
 const LIKELIEST: usize = 8;
+/// Periods so near to that of a wave that changes, as a factor, may be those of two waves that do
+/// not.
+const NEAR: f64 = 1.4;
+/// By what two waves are moved to where they are likeliest, in cycles over X.
+const STEP_OF_A_WAVE: f64 = 0.03;
 
 /// The first of two laws that are together likelier than these ln odds; `None` where no
 /// pair is.
@@ -39,12 +45,18 @@ pub(super) fn beginning(known: &Known, found: &Scan, least: f64) -> Option<Scann
 /// The better one of the likeliest pair at a site, and about the ln odds of both together.
 fn likeliest_pair(known: &Known, found: &Scan, number: usize) -> Option<(Scanned, f64)> {
     let (site, size) = (&known.sites[number], known.data.size);
+    let own = || found.laws.iter().filter(|law| law.choice.site == number);
     let is_remembered =
         |choice: &Choice| choice.form == Form::Polynomial(1) && choice.memory == Memory::Lagged;
-    let laws: Vec<&Scanned> =
-        found.laws.iter().filter(|law| law.choice.site == number && is_remembered(&law.choice)).collect();
-    let points: Vec<(&Scanned, f64)> =
-        laws.iter().flat_map(|law| law.choice.grid(site).into_iter().map(|u| (*law, u))).collect();
+    let changing = own().find(|law| law.choice.form.is_wave() && law.choice.has_shape());
+    let is_tried = |law: &Scanned, u: f64| match changing {
+        Some(wave) if law.choice.form.is_wave() && !law.choice.has_shape() => (u - wave.at).abs() < NEAR.ln(),
+        _ => is_remembered(&law.choice),
+    };
+    let points: Vec<(&Scanned, f64)> = own()
+        .flat_map(|law| law.choice.grid(site).into_iter().map(move |u| (law, u)))
+        .filter(|(law, u)| is_tried(law, *u))
+        .collect();
     let columns: Vec<DMatrix<f64>> =
         points.iter().map(|(law, u)| law.choice.columns(site, *u, size).columns).collect();
     let alone = known.remainder.gains(columns.len(), |k| columns[k].clone());
@@ -55,10 +67,24 @@ fn likeliest_pair(known: &Known, found: &Scan, number: usize) -> Option<(Scanned
         let (one, other) = pairs[k];
         beside_each_other(&columns[one], &columns[other])
     });
-    let (pair, gain) = pairs.into_iter().zip(gains).reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    let (pair, mut gain) = pairs.into_iter().zip(gains).reduce(|a, b| if b.1 > a.1 { b } else { a })?;
     let price = |k: usize| points[k].0.price;
-    let first = if alone[pair.0] >= alone[pair.1] { pair.0 } else { pair.1 };
-    let (law, at) = points[first];
+    let is_first = alone[pair.0] >= alone[pair.1];
+    let first = if is_first { pair.0 } else { pair.1 };
+    let (law, mut at) = points[first];
+    // beside a wave that is out of step any other one seems to change
+    if law.choice.form.is_wave() {
+        let [mut one, mut other] = [pair.0, pair.1].map(|k| {
+            let (law, at) = points[k];
+            let deviation = STEP_OF_A_WAVE / law.choice.at(at);
+            Numbered { choice: law.choice, site: site.clone(), at, deviation }
+        });
+        let gains = |sets: &[DMatrix<f64>]| known.remainder.gains(sets.len(), |k| sets[k].clone());
+        settle([&mut one, &mut other], &gains, size);
+        let both = beside_each_other(&one.columns(0.0, size), &other.columns(0.0, size));
+        gain = gain.max(known.remainder.gain(&both));
+        at = if is_first { one.at } else { other.at };
+    }
     let log_odds = alone[first] - price(first);
     Some((Scanned { at, log_odds, ..law.clone() }, gain - price(pair.0) - price(pair.1)))
 }

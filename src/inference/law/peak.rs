@@ -23,8 +23,9 @@ use crate::linalg::positive_definite_inverse;
 const ROUNDS: usize = 12;
 /// Steps that are tried at once, as Levenberg's damping in units of the largest curvature.
 const DAMPINGS: [f64; 6] = [0.0, 1e-3, 1e-2, 0.1, 1.0, 10.0];
-/// Differences, as shares of the range.
-const DIFFERENCE: (f64, f64) = (1e-4, 0.1);
+/// The smallest differences, as a share of the range, and the widest of what has one peak.
+const DIFFERENCE: f64 = 1e-4;
+pub(super) const WIDEST: f64 = 0.1;
 /// A step that gains less is the last one.
 const ENOUGH: f64 = 0.01;
 
@@ -51,16 +52,19 @@ pub(super) struct Peak {
 }
 
 impl Peak {
-    /// Uphill from `start`, each number within its range; `evidence` of many points at once.
+    /// Uphill from `start`, each number within its range, by differences of at most `widest` as a
+    /// share of it; `evidence` of many points at once.
     pub fn from(
         start: DVector<f64>,
         ranges: &[(f64, f64)],
+        widest: &[f64],
         evidence: &dyn Fn(&[DVector<f64>]) -> Vec<f64>,
     ) -> Peak {
         let count = ranges.len();
         let width = DVector::from_fn(count, |k, _| ranges[k].1 - ranges[k].0);
         let within = |point: DVector<f64>| bounded(point, ranges);
-        let mut steps = &width * DIFFERENCE.1;
+        let widest = DVector::from_fn(count, |k, _| width[k] * widest[k]);
+        let mut steps = widest.clone();
         let mut at = within(start);
         let mut curved = curvature(&at, &steps, ranges, evidence);
         // where nothing is gained the differences may have been too wide
@@ -84,7 +88,7 @@ impl Peak {
             }
             for k in 0..count {
                 let sd = curved.hessian[(k, k)].max(f64::MIN_POSITIVE).sqrt().recip();
-                steps[k] = sd.clamp(DIFFERENCE.0 * width[k], DIFFERENCE.1 * width[k]);
+                steps[k] = sd.clamp(DIFFERENCE * width[k], widest[k]);
             }
             curved = curvature(&at, &steps, ranges, evidence);
             idle = if gained < ENOUGH { idle + 1 } else { 0 };
@@ -317,7 +321,7 @@ mod tests {
         let inverse = (root * root.transpose()).try_inverse().unwrap();
         let one = |x: &DVector<f64>| -0.5 * (fixed(x) - mean).dot(&(inverse * (fixed(x) - mean)));
         let evidence = |xs: &[DVector<f64>]| xs.iter().map(one).collect::<Vec<f64>>();
-        let peak = Peak::from(dynamic([-2.0, 0.4, 0.9]), &RANGES, &evidence);
+        let peak = Peak::from(dynamic([-2.0, 0.4, 0.9]), &RANGES, &[WIDEST; 3], &evidence);
         assert!((fixed(&peak.at) - mean).amax() < 0.005, "{}", peak.at);
         let expected = root * root.transpose();
         for k in 0..3 {
@@ -337,7 +341,7 @@ mod tests {
     #[test]
     fn what_changes_nothing_costs_nothing() {
         let evidence = |xs: &[DVector<f64>]| vec![3.0; xs.len()];
-        let peak = Peak::from(dynamic([-1.0, 1.0, 0.6]), &RANGES, &evidence);
+        let peak = Peak::from(dynamic([-1.0, 1.0, 0.6]), &RANGES, &[WIDEST; 3], &evidence);
         assert!((peak.log_evidence - 3.0).abs() < 0.3, "{}", peak.log_evidence);
         let (low, high) = peak.interval(&|point| point[2], None);
         assert!(low < 0.55 && high > 0.9, "{low} {high}");
@@ -349,7 +353,7 @@ mod tests {
         let is_in = |x: &DVector<f64>| (x[0] + 2.0).abs() < 0.3 && (x[1] - 1.0).abs() < 0.2;
         let one = |x: &DVector<f64>| if is_in(x) { 0.0 } else { -1e3 } - 0.5 * ((x[2] - 0.7) / 0.02).powi(2);
         let evidence = |xs: &[DVector<f64>]| xs.iter().map(one).collect::<Vec<f64>>();
-        let peak = Peak::from(dynamic([-2.1, 1.05, 0.72]), &RANGES, &evidence);
+        let peak = Peak::from(dynamic([-2.1, 1.05, 0.72]), &RANGES, &[WIDEST; 3], &evidence);
         for (k, half) in [(0, 0.3), (1, 0.2)] {
             let (_, sd) = peak.moments(k);
             assert!((sd * 3.0f64.sqrt() / half - 1.0).abs() < 0.12, "{k}: {sd}");
@@ -365,7 +369,7 @@ mod tests {
         let one =
             |x: &DVector<f64>| -0.5 * ((x[2] - 1.05) / 0.1).powi(2) - 0.5 * ((x[0] + 2.0) / 0.1).powi(2);
         let evidence = |xs: &[DVector<f64>]| xs.iter().map(one).collect::<Vec<f64>>();
-        let peak = Peak::from(dynamic([-2.0, 1.0, 0.7]), &RANGES, &evidence);
+        let peak = Peak::from(dynamic([-2.0, 1.0, 0.7]), &RANGES, &[WIDEST; 3], &evidence);
         let (mean, sd) = peak.moments(2);
         assert!(peak.at[2] == 1.0, "{}", peak.at);
         // what is at the end is within

@@ -146,9 +146,9 @@ impl Posterior {
     }
 
     /// The highest so many peaks down to `below` under the highest one, each apart from higher ones
-    /// by a valley `deep` under it.
-    pub fn highest(&self, count: usize, (below, deep): (f64, f64)) -> Vec<f64> {
-        self.peaks_down_to(below, deep).into_iter().take(count).map(|k| self.points[k].0).collect()
+    /// by a valley `deep` under it. Coordinate and ln of the evidence.
+    pub fn highest(&self, count: usize, (below, deep): (f64, f64)) -> Vec<(f64, f64)> {
+        self.peaks_down_to(below, deep).into_iter().take(count).map(|k| self.points[k]).collect()
     }
 
     fn peaks_down_to(&self, below: f64, deep: f64) -> Vec<usize> {

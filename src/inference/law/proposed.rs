@@ -84,6 +84,10 @@ pub struct Law {
     /// by two standard deviations of what its own constants leave open; `None` of a straight line,
     /// and of a law that remembers, where they have no rival.
     pub further: Option<(f64, f64)>,
+    /// How far off a law with a loop may be along a way within its data that turns round elsewhere,
+    /// m, but for a straight line: from rivals of any memory at its place, and by two standard
+    /// deviations of what its own constants leave open.
+    pub another_way: Option<f64>,
     /// Data as it sees them: what is left but for the law.
     pub points: Vec<Point>,
     /// A smooth curve through them.
@@ -247,6 +251,7 @@ impl Law {
             rivals: Vec::new(),
             next: None,
             further: None,
+            another_way: None,
             points: Vec::new(),
             curve: Vec::new(),
             more: None,
@@ -258,6 +263,12 @@ impl Law {
     /// and nothing is left beside it, which would go on too.
     pub fn holds_beyond(&self) -> Option<bool> {
         self.further.map(|(_, apart)| apart <= self.noise && self.more.is_none())
+    }
+
+    /// Whether it may be used along another way than the recorded ones: what is open there is
+    /// within the noise.
+    pub fn holds_another_way(&self) -> Option<bool> {
+        self.another_way.map(|apart| apart <= self.noise)
     }
 
     /// It, and the one that is proposed beside it.

@@ -1,9 +1,10 @@
 //! All laws at all sites, each by its evidence, and the smooth curves that they compete with.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use std::f64::consts::PI;
 
 use super::choice::Choice;
+use super::looked::{FAR, Looked, MISSED, SAME, at_point};
 use super::peak::Peak;
 use super::posterior::Posterior;
 use super::remainder::Remainder;
@@ -16,14 +17,9 @@ use crate::parallel::in_parallel;
 const CURVE: usize = 6;
 /// Laws whose evidence at the best point is so far (ln) behind the best need no closer look.
 const BEHIND: f64 = 12.0;
-/// Part of the evidence of a law that a first look may miss for each of its numbers that is not
-/// linear: its peak is narrow.
-const MISSED: f64 = 0.25;
 /// Values of the number that is not linear, at most, that are tried with the variable as it is with
-/// each; how far (ln) behind the likeliest they may be at least; how near two of them are the same.
+/// each.
 const MOST_TRIED: usize = 6;
-const FAR: f64 = 30.0;
-pub(super) const SAME: f64 = 0.01;
 /// Of so many laws, the likeliest, all else is fitted anew.
 const REFITTED: usize = 16;
 
@@ -55,12 +51,6 @@ impl Scanned {
             None => vec![(self.choice, self.at)],
         }
     }
-}
-
-/// A law of several numbers with them: the coordinate of the first, and its shape.
-pub(super) fn at_point(choice: Choice, point: &DVector<f64>) -> (Choice, f64) {
-    let numbers = point.as_slice();
-    (choice.shaped(&numbers[1..]), numbers[0])
 }
 
 /// Everything that was tried, the likeliest first.
@@ -118,7 +108,7 @@ pub(super) fn scan_as_predicted(
     let tried = best.posterior.highest(MOST_TRIED, (below, APART.ln()));
     let mut each: Vec<(Vec<f64>, Scanned)> = in_parallel(tried.len(), |k| {
         let mut own = sites.to_vec();
-        own[number].values = as_predicted(tried[k]);
+        own[number].values = as_predicted(tried[k].0);
         let found = scan_some(remainder, &own, size, |other| other.is(&choice)).laws.into_iter().next()?;
         Some((own.swap_remove(number).values, found))
     })
@@ -169,17 +159,8 @@ pub(super) fn scan_some(
     };
     let by_site = in_parallel(sites.len(), |number| {
         let choices = &all[number];
-        let of_choice = |&choice: &Choice| {
-            let grid = choice.grid(&sites[number]);
-            let own = |choice: Choice| (choice, Posterior::new(&grid, &|us| evidence(choice, us)));
-            let likeliest = choice
-                .first_shapes()
-                .into_iter()
-                .map(own)
-                .reduce(|a, b| if b.1.best().1 > a.1.best().1 { b } else { a });
-            likeliest.unwrap_or_else(|| own(choice))
-        };
-        let laws: Vec<(Choice, Posterior)> = choices.iter().filter(|c| is_tried(c)).map(of_choice).collect();
+        let of_choice = |&choice: &Choice| Looked::at(choice, &sites[number], &evidence);
+        let laws: Vec<Looked> = choices.iter().filter(|c| is_tried(c)).map(of_choice).collect();
         let curve =
             (!laws.is_empty()).then(|| remainder.gain(&curve(&sites[number], size)) + prior(places, 1));
         (laws, curve)
@@ -189,28 +170,26 @@ pub(super) fn scan_some(
     for (number, (laws, curve)) in by_site.into_iter().enumerate() {
         let even = prior(places, all[number].len());
         let prior = |choice: &Choice| even + (sites[number].share(choice.form) * choice.share()).ln();
-        first.extend(laws.into_iter().map(|(choice, posterior)| (choice, posterior, prior(&choice))));
+        first.extend(laws.into_iter().map(|law| (prior(&law.choice), law)));
         if let Some(curve) = curve.filter(|curve| best_curve.is_none_or(|(_, best)| *curve > best)) {
             best_curve = Some((number, curve));
         }
     }
     // at most so much its odds may be
-    let peak = |(choice, posterior, prior): &(Choice, Posterior, f64)| {
-        let most = posterior.best().1;
-        let numbers = usize::from(choice.constant().is_some()) + choice.shape().len();
+    let peak = |(prior, law): &(f64, Looked)| {
+        let most = law.posterior.best().1;
+        let numbers = usize::from(law.choice.constant().is_some()) + law.choice.shape().len();
         most + MISSED * numbers as f64 * most.max(0.0) + prior
     };
-    let sure = |law: &(Choice, Posterior, f64)| law.1.best().1 + law.2;
+    let sure = |(prior, law): &(f64, Looked)| law.posterior.best().1 + prior;
     let highest = first.iter().map(sure).fold(f64::NEG_INFINITY, f64::max);
     // what is less likely than nothing is neither proposed nor a rival of what is
     let closer: Vec<bool> = first.iter().map(|law| peak(law) > (highest - BEHIND).max(0.0)).collect();
     let mut laws = in_parallel(first.len(), |k| {
-        let (choice, mut posterior, prior) = first[k].clone();
+        let (prior, law) = &first[k];
+        let (choice, mut posterior) = (law.choice, law.posterior.clone());
         if closer[k] && choice.has_shape() {
-            let (low, high) = posterior.ends();
-            let ranges = [vec![(low, high)], choice.shape_ranges()].concat();
-            let start = DVector::from_vec([vec![posterior.best().0], choice.shape()].concat());
-            let peak = Peak::from(start, &ranges, &|points| {
+            let (peak, also) = law.peak(&|points| {
                 remainder.gains(points.len(), |k| {
                     let (choice, u) = at_point(choice, &points[k]);
                     choice.columns(&sites[choice.site], u, size).columns
@@ -218,10 +197,10 @@ pub(super) fn scan_some(
             });
             let (choice, at) = at_point(choice, &peak.at);
             let (mean, sd) = peak.moments(0);
-            let posterior = Posterior::normal(mean, sd, (low, high));
+            let posterior = Posterior::normal(mean, sd, posterior.ends());
             let log_odds = peak.log_evidence + prior;
             let price = peak.highest - log_odds;
-            return Scanned { choice, posterior, at, log_odds, price, also: Vec::new(), peak: Some(peak) };
+            return Scanned { choice, posterior, at, log_odds, price, also, peak: Some(peak) };
         }
         if closer[k] {
             posterior.refine(&|us| evidence(choice, us));

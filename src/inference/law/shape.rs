@@ -1,5 +1,5 @@
 //! Numbers of a law besides the first that is not linear: of the shape of its loop, or the exponent
-//! beyond a threshold.
+//! beyond a threshold, or how a wave changes.
 
 use super::bouc_wen::LoopShape;
 use super::choice::Choice;
@@ -19,7 +19,16 @@ const FIRST_BEYOND: [f64; 3] = [0.67, 1.5, 2.5];
 const ROUGH: (f64, f64) = (0.02, 0.3);
 const FIRST_ROUGH: [f64; 2] = [0.05, 0.14];
 
-/// What the prior of either is beside that of a corner.
+/// Half of what a frequency changes by from zero to X, as a share of the mean one: at an end it is
+/// 2.6 times that at the other. Those of a first look: over as many cycles as there may be two
+/// neighbours are still in step for most of them.
+const CHIRP: (f64, f64) = (-0.45, 0.45);
+const FIRST_CHIRP: [f64; 6] = [-0.4, -0.24, -0.08, 0.08, 0.24, 0.4];
+/// How many times as large a wave is at X as at zero, and those of a first look.
+const SWELL: (f64, f64) = (0.1, 10.0);
+const FIRST_SWELL: [f64; 2] = [0.3, 3.0];
+
+/// What the prior of each is beside that of a corner, or of a wave that does not change.
 const NO_CORNER: f64 = 0.25;
 
 /// A number of a shape, for people.
@@ -74,6 +83,8 @@ impl Choice {
             Form::Rough(v) => {
                 all.push(OfShape { is_width: true, ..OfShape::plain("v", "width", v * largest, None) })
             }
+            Form::Chirp(q) => all.push(OfShape::plain("q", "change of the frequency", q, None)),
+            Form::Swell(g) => all.push(OfShape::plain("g", "growth", g, None)),
             _ => {}
         }
         all
@@ -81,7 +92,8 @@ impl Choice {
 }
 
 impl Form {
-    /// A corner is what most things have that touch; how else they begin to is known of few.
+    /// A corner is what most things have that touch, and most waves go on as they began; how else
+    /// is known of few.
     fn share(self) -> f64 {
         if self.shape().is_empty() { 1.0 } else { NO_CORNER }
     }
@@ -90,6 +102,8 @@ impl Form {
     pub(super) fn shape(self) -> Vec<f64> {
         match self {
             Form::PowerBeyond(number) | Form::Rough(number) => vec![number.ln()],
+            Form::Chirp(q) => vec![q],
+            Form::Swell(g) => vec![g.ln_1p()],
             _ => Vec::new(),
         }
     }
@@ -98,6 +112,8 @@ impl Form {
         match (self, numbers) {
             (Form::PowerBeyond(_), &[p]) => Form::PowerBeyond(p.exp()),
             (Form::Rough(_), &[v]) => Form::Rough(v.exp()),
+            (Form::Chirp(_), &[q]) => Form::Chirp(q),
+            (Form::Swell(_), &[ratio]) => Form::Swell(ratio.exp_m1()),
             _ => self,
         }
     }
@@ -106,6 +122,8 @@ impl Form {
         match self {
             Form::PowerBeyond(_) => vec![(BEYOND.0.ln(), BEYOND.1.ln())],
             Form::Rough(_) => vec![(ROUGH.0.ln(), ROUGH.1.ln())],
+            Form::Chirp(_) => vec![CHIRP],
+            Form::Swell(_) => vec![(SWELL.0.ln(), SWELL.1.ln())],
             _ => Vec::new(),
         }
     }
@@ -114,6 +132,8 @@ impl Form {
         match self {
             Form::PowerBeyond(_) => FIRST_BEYOND.map(Form::PowerBeyond).to_vec(),
             Form::Rough(_) => FIRST_ROUGH.map(Form::Rough).to_vec(),
+            Form::Chirp(_) => FIRST_CHIRP.map(Form::Chirp).to_vec(),
+            Form::Swell(_) => FIRST_SWELL.map(|ratio| Form::Swell(ratio - 1.0)).to_vec(),
             _ => Vec::new(),
         }
     }

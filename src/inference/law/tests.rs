@@ -2,6 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
+mod kin;
+mod loops;
+mod waves;
+
 use super::*;
 use crate::inference::tests::Columns;
 use crate::inference::{Diagnosis, Evidence, Location, Part, diagnose};

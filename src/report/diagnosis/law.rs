@@ -94,6 +94,7 @@ fn of_law(law: &Law, number: usize, subject: &LawSubject, note: &LawNote) -> Val
         "form": law.form.name(),
         "memory": law.memory.name(),
         "constants": law.constants().map(constant).collect::<Vec<_>>(),
+        "intervals_of_this_form_alone": is_of_form_alone(law),
         "correlation": law.correlation.row_iter().map(|row| row.iter().copied().collect()).collect::<Vec<Vec<f64>>>(),
         "range": [low / variable.si, high / variable.si],
         "explains_rms_um": um(law.explains),
@@ -106,6 +107,10 @@ fn of_law(law: &Law, number: usize, subject: &LawSubject, note: &LawNote) -> Val
             "at": at / variable.si,
             "apart_um": um(apart),
             "may_be_used": law.holds_beyond(),
+        })),
+        "another_way": law.another_way.map(|apart| json!({
+            "apart_um": um(apart),
+            "may_be_used": law.holds_another_way(),
         })),
         "more_left": law.more.as_ref().map(|(location, variable)| {
             json!({ "location": location.to_string(), "place": place(location), "variable": variable.name, "unit": variable.unit })
@@ -269,7 +274,20 @@ fn alternatives(law: &Law, subject: &LawSubject) -> Option<String> {
     let said: Vec<String> = law.rivals.iter().take(SAID).map(|rival| called(rival, law)).collect();
     let more = if law.rivals.len() > SAID { ", or others" } else { "" };
     let these = subject.noun;
-    Some(format!("It may as well be: {}{more}. These {these} cannot distinguish them.", said.join("; or ")))
+    let of_form = match is_of_form_alone(law) {
+        true => " Its numbers and their intervals are those of its own form: another form has others.",
+        false => "",
+    };
+    Some(format!(
+        "It may as well be: {}{more}. These {these} cannot distinguish them.{of_form}",
+        said.join("; or ")
+    ))
+}
+
+/// True where these data do not distinguish it from a form whose numbers are not its own: no
+/// interval of a number says anything of that one.
+fn is_of_form_alone(law: &Law) -> bool {
+    law.rivals.iter().any(|rival| !rival.form.is_kin(law.form) || !rival.memory.is(law.memory))
 }
 
 /// The measurement that would distinguish a law from its rivals, in a sentence.
@@ -311,8 +329,17 @@ fn range(law: &Law, subject: &LawSubject, note: &LawNote) -> String {
         }
         _ => String::new(),
     };
+    let elsewhere = match law.another_way.filter(|_| law.holds_another_way() == Some(false)) {
+        Some(apart) => format!(
+            " Where the {} turns round elsewhere than here, these {} leave up to {} µm open.",
+            variable.name,
+            subject.noun,
+            um(apart)
+        ),
+        None => String::new(),
+    };
     format!(
-        "It is a proposal from {} between {} and {}; beyond that it is an extrapolation{beyond}. It changes no finding{written}.",
+        "It is a proposal from {} between {} and {}; beyond that it is an extrapolation{beyond}.{elsewhere} It changes no finding{written}.",
         subject.noun,
         show(low, 3),
         with_unit(show(high, 3), variable.unit)

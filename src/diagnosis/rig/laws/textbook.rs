@@ -69,8 +69,11 @@ pub fn remark(law: &Law) -> Option<String> {
         (Form::Decay | Form::Settling, Memory::Side, "F") | (Form::Settling, _, "v") => {
             "Friction that falls to a level is what a lubricated or a worn slide does (Stribeck)."
         }
-        (Form::Harmonic, _, "y") => {
+        (Form::Harmonic | Form::Swell(_), _, "y") => {
             "A wave over the reading is what an encoder or an interferometer adds when it interpolates."
+        }
+        (Form::Chirp(_), _, "y") => {
+            "A wave whose period changes along the reading is what a scale has whose pitch changes."
         }
         (Form::Pull, ..) => {
             "The inverse square of a distance is what the pole of a magnet pulls with (Coulomb)."

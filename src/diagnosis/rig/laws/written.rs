@@ -49,7 +49,7 @@ mod tests {
             // amplitudes are of the scaled variable
             let amplitudes = [30.0, -12.0, 5.0][..form.count()].to_vec();
             let s = match form {
-                Form::Harmonic | Form::Oscillation => 2.5,
+                _ if form.is_wave() => 2.5,
                 Form::Pull | Form::PullAbove => 1.4,
                 Form::PullBelow => -0.9,
                 _ => 0.4,
@@ -62,7 +62,7 @@ mod tests {
             };
             let symbols: &[&str] = match form {
                 Form::Threshold | Form::Rough(_) | Form::Pull | Form::PullBelow | Form::PullAbove => &["k"],
-                Form::Harmonic | Form::Settling => &["a", "b"],
+                Form::Harmonic | Form::Chirp(_) | Form::Swell(_) | Form::Settling => &["a", "b"],
                 Form::Oscillation => &["a", "b", "c"],
                 Form::PowerAfterGap => &["a", "g"],
                 Form::Polynomial(_) => &["c1", "c2", "c3"],
@@ -94,6 +94,8 @@ mod tests {
             law.of_shape = match form {
                 Form::PowerBeyond(p) => vec![named("p", p)],
                 Form::Rough(v) => vec![named("v", v * largest)],
+                Form::Chirp(q) => vec![named("q", q)],
+                Form::Swell(g) => vec![named("g", g)],
                 _ => Vec::new(),
             };
             let written = written(&law, "test").unwrap();

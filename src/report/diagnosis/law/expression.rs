@@ -48,6 +48,14 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         Form::Settling => format!("a·exp(−{size}/{corner}) + b"),
         Form::Logarithm => format!("a·{sign}ln(1 + {size}/{corner})"),
         Form::Harmonic => format!("a·(cos(2π·{x}/P) − 1) + b·sin(2π·{x}/P)"),
+        Form::Chirp(_) => {
+            let turns = format!("2π·{x}/P·(1 + q·({x}/{scale} − 1))");
+            format!("a·(cos({turns}) − 1) + b·sin({turns})")
+        }
+        Form::Swell(_) => {
+            let grown = format!("(1 + g·{size}/{scale})");
+            format!("a·({grown}·cos(2π·{x}/P) − 1) + b·{grown}·sin(2π·{x}/P)")
+        }
         Form::Oscillation => format!("a·cos(2π·{x}/P) + b·sin(2π·{x}/P) + c"),
         Form::Polynomial(1) => format!("c1·{x}"),
         Form::Polynomial(2) => format!("c1·{x} + c2·{x}²"),
@@ -106,6 +114,16 @@ pub fn expression(site: &Site, form: Form, memory: Memory) -> Expression {
         Form::Settling if is_signed => format!(r"{sign}\left(a\,e^{{-{size}/{corner}}} + b\right)"),
         Form::Settling => format!(r"a\,e^{{-{size}/{corner}}} + b"),
         Form::Logarithm => format!(r"a{sign}\,\ln\left(1 + \frac{{{size}}}{{{corner}}}\right)"),
+        Form::Chirp(_) => {
+            let faster = format!(r"\left(1 + q\left(\frac{{{x}}}{{{scale}}} - 1\right)\right)");
+            let turns = format!(r"\left(\frac{{2\pi {x}}}{{P}}{faster}\right)");
+            format!(r"a\left(\cos{turns} - 1\right) + b\sin{turns}")
+        }
+        Form::Swell(_) => {
+            let grown = format!(r"\left(1 + g\frac{{{size}}}{{{scale}}}\right)");
+            let turns = format!(r"\frac{{2\pi {x}}}{{P}}");
+            format!(r"a\left({grown}\cos{turns} - 1\right) + b{grown}\sin{turns}")
+        }
         Form::Oscillation => {
             format!(r"a\cos\frac{{2\pi {x}}}{{P}} + b\sin\frac{{2\pi {x}}}{{P}} + c")
         }

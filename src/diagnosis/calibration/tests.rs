@@ -2,6 +2,7 @@
 //! by such robots.
 
 mod another_rod;
+mod beside;
 mod changed;
 mod changing;
 mod coarse_angles;

@@ -16,7 +16,7 @@ use super::prepared::Prepared;
 use crate::calibration::{Calibration, Carried, Compensation, Mode, Noise, Robust, calibrate_from};
 use crate::diagnosis::calibration::effects::payload;
 use crate::error::Result;
-use crate::inference::{Hypothesis, Term, rms};
+use crate::inference::{Evidence, Hypothesis, Term, rms};
 use crate::rod::Rod;
 use crate::units::URAD;
 
@@ -136,12 +136,25 @@ pub fn calibrated_beside<'c>(
     let residual = |row: usize| -beside.calibration.deviations[row] * model.scale(row);
     let left = (0..recording.len()).flat_map(|row| <[f64; 3]>::from(residual(row)));
     let left = rms(&DVector::from_iterator(3 * recording.len(), left));
-    let expected = rms(&by_linear_model.rows(0, prepared.evidence.recorded).into_owned());
-    Ok(match (left - expected).abs() <= LINEAR * expected {
+    let recorded = |all: &DVector<f64>| rms(&all.rows(0, prepared.evidence.recorded).into_owned());
+    let expected = recorded(by_linear_model);
+    let far = LINEAR * expected + recorded(&by_numbers(&prepared.evidence, hypothesis, by_linear_model));
+    Ok(match (left - expected).abs() <= far {
         true if !turns(&prepared.context, &beside.calibration) => Again::Same,
         true => Again::Near(beside),
         false => Again::Far(beside),
     })
+}
+
+/// What the numbers of the files explain beside a hypothesis, of which a calibration knows nothing:
+/// at the likeliest factors z of the columns N these draw as much as what is left does.
+///
+/// ```text
+/// z = Nᵀ·left/σ²
+/// ```
+fn by_numbers(evidence: &Evidence, hypothesis: &Hypothesis, left: &DVector<f64>) -> DVector<f64> {
+    let variance = hypothesis.sigma.powi(2).max(f64::MIN_POSITIVE);
+    &evidence.nominal * (evidence.nominal.tr_mul(left) / variance)
 }
 
 /// A robot that is calibrated with these loads; `None` where that has not converged.

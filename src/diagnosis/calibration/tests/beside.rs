@@ -1,0 +1,33 @@
+//! The robot that is calibrated beside what was found, against what was found about another.
+
+use super::*;
+use crate::diagnosis::calibration::diagnose::beside::{Again, calibrated_beside};
+use crate::inference::sketch;
+
+/// The same with a base that moves by a tenth of a millimetre after pose 30, on clamps that stand
+/// aside by so much, m.
+fn on_clamps_aside(clean: &Campaign, aside: f64) -> Campaign {
+    let mut random = Random::seeded(5, 0);
+    let clamps = clean.measurements.groups.len();
+    let off: Vec<_> = (0..clamps).map(|_| Vector3::from_fn(|_, _| aside * random.normal())).collect();
+    let moved = |row: usize| if row < 30 { Vector3::zeros() } else { Vector3::new(80.0, -60.0, 0.0) * UM };
+    let group = |row: usize| clean.measurements.rows[row].group;
+    recorded(clean, &|row| off[group(row)] + moved(row), 8.0 * UM, 6)
+}
+
+/// A calibration knows nothing of where clamps may stand: that it leaves more than a hypothesis
+/// beside which they do says nothing against that. Where nobody said so, it leaves as much.
+#[test]
+fn clamps_that_may_stand_aside_are_no_other_robot() {
+    let clean = clamps(12);
+    for uncertainty in [None, Some(60.0 * UM)] {
+        let aside = uncertainty.unwrap_or_default();
+        let campaign = Campaign { clamp_uncertainty: uncertainty, ..on_clamps_aside(&clean, aside) };
+        let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
+        let prepared = Prepared::new(&campaign, calibration).unwrap();
+        let found = sketch(&prepared.model, &prepared.evidence);
+        assert!(!found.hypothesis.terms.is_empty(), "{uncertainty:?}");
+        let again = calibrated_beside(&prepared, &found.hypothesis, &found.left).unwrap();
+        assert!(!matches!(again, Again::Far(_)), "{uncertainty:?}");
+    }
+}

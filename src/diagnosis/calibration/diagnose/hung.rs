@@ -14,9 +14,9 @@
 //! explain about a robot that was calibrated with neither, one may explain about its own: a robot
 //! beside each of them alone is sought as well, and is the better one at the odds of any finding.
 //!
-//! What is found about a robot is asked again about the one that is calibrated beside it, and counts
-//! where that one leaves what it says: drives that turn by a weight make columns that say nothing
-//! of the arm without it.
+//! What is found about a robot is asked again about the one that is calibrated beside it, and
+//! counts where that one leaves what it says: drives that turn by a weight make columns that say
+//! nothing of the arm without it.
 
 use super::beside::{Again, Beside, Loads, calibrated_beside, calibrated_with, is_load};
 use super::prepared::{FirstLook, Prepared};

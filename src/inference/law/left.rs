@@ -115,8 +115,9 @@ fn together(
         for free in [0, 1] {
             let (choices, columns, price, own) =
                 both.beside(known, free, tried[free].as_deref(), sites_with, |known, found| {
-                    let best = found.laws.first()?;
-                    let choices = alike(found, best).iter().map(|law| law.choice).collect();
+                    let class = steady(found, laws[1 - free])?;
+                    let best = class.first()?;
+                    let choices = class.iter().map(|law| law.choice).collect();
                     let own = Numbered::new(best, &known.sites[best.choice.site]);
                     Some((choices, columns(known, best, known.sites), best.price, own))
                 })?;
@@ -138,7 +139,7 @@ fn together(
     let described = |free: usize| {
         let Alone { class: before, held_out, curve } = *alone[free];
         both.beside(known, free, tried[free].as_deref(), sites_with, |known, found| {
-            let class = alike(found, found.laws.first()?);
+            let class = steady(found, laws[1 - free])?;
             let error = |law: &&Scanned| {
                 let number = before.iter().position(|own| own.choice.is(&law.choice))?;
                 held_out.get(number).copied()
@@ -152,6 +153,20 @@ fn together(
     other.widen(wider);
     let log_odds = known.remainder.fit(&both.side_by_side()).gain - prices.iter().sum::<f64>();
     (!other.repeats(&one)).then_some(([one, other], log_odds))
+}
+
+/// The likeliest law beside another, and those that the data do not distinguish from it. Beside a
+/// wave the first of two is one that goes on as it began, where that is among them: whatever is out
+/// of step with another wave seems to change.
+fn steady<'s>(found: &'s Scan, other: &Scanned) -> Option<Vec<&'s Scanned>> {
+    let mut class = alike(found, found.laws.first()?);
+    let is_steady = |law: &&Scanned| law.choice.form.is_wave() && !law.choice.has_shape();
+    let is_changing = class.first().is_some_and(|law| law.choice.form.is_wave() && law.choice.has_shape());
+    let first = class.iter().position(is_steady).filter(|_| is_changing && other.choice.form.is_wave());
+    if let Some(first) = first {
+        class[..=first].rotate_right(1);
+    }
+    Some(class)
 }
 
 impl Both {

@@ -3,7 +3,7 @@
 use super::form::Form;
 
 impl Form {
-    /// All of them.
+    /// All of them, in such an order that the next lists begin them.
     pub const ALL: [Form; 22] = [
         Form::Power,
         Form::PowerAfterGap,
@@ -14,60 +14,29 @@ impl Form {
         Form::ROUGH,
         Form::Step,
         Form::Approach,
+        Form::Logarithm,
+        Form::Polynomial(1),
+        Form::Polynomial(2),
+        Form::Polynomial(3),
         Form::Decay,
         Form::Settling,
-        Form::Logarithm,
         Form::Harmonic,
         Form::CHIRP,
         Form::SWELL,
-        Form::Oscillation,
         Form::Pull,
+        Form::Oscillation,
         Form::PullBelow,
         Form::PullAbove,
-        Form::Polynomial(1),
-        Form::Polynomial(2),
-        Form::Polynomial(3),
     ];
 
-    /// Of a load or what grows with it, from zero on.
-    pub const FROM_ZERO: &[Form] = &[
-        Form::Power,
-        Form::PowerAfterGap,
-        Form::Saturation,
-        Form::Rounded,
-        Form::Threshold,
-        Form::CONTACT,
-        Form::ROUGH,
-        Form::Step,
-        Form::Approach,
-        Form::Decay,
-        Form::Settling,
-        Form::Logarithm,
-        Form::Harmonic,
-        Form::CHIRP,
-        Form::SWELL,
-        Form::Pull,
-        Form::Polynomial(1),
-        Form::Polynomial(2),
-        Form::Polynomial(3),
-    ];
+    /// Of what comes to rest or to a stop: to the logarithm.
+    pub const TO_A_STOP: &[Form] = Form::ALL.split_at(10).0;
 
-    /// What gives way from zero on.
-    pub const GIVING_WAY: &[Form] = &[
-        Form::Power,
-        Form::PowerAfterGap,
-        Form::Saturation,
-        Form::Rounded,
-        Form::Threshold,
-        Form::CONTACT,
-        Form::ROUGH,
-        Form::Step,
-        Form::Approach,
-        Form::Logarithm,
-        Form::Polynomial(1),
-        Form::Polynomial(2),
-        Form::Polynomial(3),
-    ];
+    /// What gives way from zero on: to the polynomials.
+    pub const GIVING_WAY: &[Form] = Form::ALL.split_at(13).0;
+
+    /// Of a load or what grows with it, from zero on: to the pull.
+    pub const FROM_ZERO: &[Form] = Form::ALL.split_at(19).0;
 
     /// From a start on: time, order.
     pub const SINCE_A_START: &[Form] = &[
@@ -96,4 +65,16 @@ impl Form {
         Form::Polynomial(2),
         Form::Polynomial(3),
     ];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_end_where_they_say() {
+        let last = [Form::TO_A_STOP, Form::GIVING_WAY, Form::FROM_ZERO].map(|list| list.last());
+        let expected = [Form::Logarithm, Form::Polynomial(3), Form::Pull];
+        assert_eq!(last, [0, 1, 2].map(|k| Some(&expected[k])));
+    }
 }

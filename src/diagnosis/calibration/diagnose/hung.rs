@@ -38,8 +38,8 @@ const TRIED: [(Hung, &[f64]); 3] = [
 ];
 /// A rod that weighs a tenth: none is lighter.
 const LIGHTEST_ROD: f64 = -0.9;
-/// Times that a robot is calibrated again beside what is found about it.
-const AGAIN: usize = 3;
+/// Times that a robot is calibrated once more beside what is found about it.
+const FOLLOWED: usize = 3;
 /// Times that the steps about the best one are halved.
 const HALVED: usize = 4;
 
@@ -74,18 +74,26 @@ pub fn beside_hidden_masses<'c>(
     prepared: Prepared<'c>,
     look: &FirstLook,
 ) -> Result<BesideMasses<'c>> {
-    let first = Found::about(prepared, false).followed(look, AGAIN, f64::NEG_INFINITY)?;
+    let first = Found::about(prepared, false).followed(look, FOLLOWED)?;
     let masses = beside_masses(&first.prepared)?;
     let alone = beside_one_load(&first.prepared, &first.sketch.hypothesis)?;
     let calibration = first.prepared.model.calibration.clone();
-    let mut found = vec![first];
-    for beside in masses.into_iter().chain(alone) {
+    let about = |beside: Beside<'c>| -> Result<(Found<'c>, FirstLook)> {
         let left = Some(beside.calibration.deviations.iter().map(|deviation| -deviation).collect());
         let look = FirstLook { left, carried: beside.carried, ..look.clone() };
         let other = Prepared::about(campaign, calibration.clone(), beside.about, &look)?;
-        let known = found.iter().filter(|other| other.holds).map(Found::log_probability);
-        let least = known.fold(f64::NEG_INFINITY, f64::max) - APART.ln();
-        found.push(Found::about(other, true).followed(&look, AGAIN, least)?);
+        Ok((Found::about(other, true), look))
+    };
+    let mut found = vec![first];
+    let masses = masses.into_iter().map(about).collect::<Result<Vec<_>>>()?;
+    let likeliest = masses.iter().map(|(own, _)| own.log_probability()).fold(f64::NEG_INFINITY, f64::max);
+    for (own, look) in masses {
+        let times = if own.log_probability() >= likeliest { FOLLOWED } else { 0 };
+        found.push(own.followed(&look, times)?);
+    }
+    // a load alone is another one than beside others, however improbable it is as it was there
+    for (own, look) in alone.into_iter().map(about).collect::<Result<Vec<_>>>()? {
+        found.push(own.followed(&look, FOLLOWED)?);
     }
     if found.iter().any(|other| other.holds) {
         found.retain(|other| other.holds);
@@ -134,18 +142,16 @@ impl<'c> Found<'c> {
     }
 
     /// The likeliest of this one and of so many more that are calibrated beside what is found, one
-    /// after the other: of those that hold, where any does. What is less than `least` probable is
-    /// not followed twice.
-    fn followed(mut self, look: &FirstLook, times: usize, least: f64) -> Result<Found<'c>> {
+    /// after the other: of those that hold, where any does.
+    fn followed(mut self, look: &FirstLook, times: usize) -> Result<Found<'c>> {
         let model = &self.prepared.model;
         let Sketch { hypothesis, left, .. } = &self.sketch;
         let again = calibrated_beside(&self.prepared, hypothesis, left)?;
         self.holds = !matches!(again, Again::Far(_));
-        let is_followed = times == AGAIN || (times > 0 && self.log_probability() >= least);
-        let Some(beside) = again.another().filter(|_| is_followed) else { return Ok(self) };
+        let Some(beside) = again.another().filter(|_| times > 0) else { return Ok(self) };
         let look = FirstLook { left: Some(model.by_row(left)), carried: beside.carried, ..look.clone() };
         let next = Prepared::about(model.campaign, model.calibration.clone(), beside.about, &look)?;
-        let next = Found::about(next, true).followed(&look, times - 1, least)?;
+        let next = Found::about(next, true).followed(&look, times - 1)?;
         let worth = |own: &Found| (own.holds, own.log_probability());
         Ok(if worth(&self) > worth(&next) { self } else { next })
     }

@@ -2,9 +2,8 @@
 //!
 //! The location of a candidate says the same to people; nothing reads it back from there.
 
-use std::ops::Range;
-
 use std::fmt;
+use std::ops::Range;
 
 use super::gear::Gear;
 use crate::inference::Part;
@@ -138,19 +137,7 @@ impl Law {
 impl Law {
     /// Where the mass of a load hangs; `None` for any other law.
     pub fn hung(&self) -> Option<Hung> {
-        match self {
-            Law::Hung(own) => Some(*own),
-            Law::Only
-            | Law::Gear(_)
-            | Law::Play(_)
-            | Law::Nonlinear(_)
-            | Law::MassesUnknown(_)
-            | Law::Rod(_)
-            | Law::Drift(..)
-            | Law::Warms(..)
-            | Law::Bends(_)
-            | Law::Moved(_) => None,
-        }
+        if let Law::Hung(own) = self { Some(*own) } else { None }
     }
 
     /// The law of those parameters that are kept, of as many as `is_kept` has.

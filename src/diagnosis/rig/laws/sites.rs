@@ -30,18 +30,7 @@ const OF_A_LOAD: &[Form] = Form::FROM_ZERO;
 /// Of what gives way under them.
 const OF_A_CONTACT: &[Form] = Form::GIVING_WAY;
 /// Of what comes to rest or to a stop: parts do, sensors seldom.
-const OF_A_STOP: &[Form] = &[
-    Form::Power,
-    Form::PowerAfterGap,
-    Form::Saturation,
-    Form::Rounded,
-    Form::Threshold,
-    Form::CONTACT,
-    Form::ROUGH,
-    Form::Step,
-    Form::Approach,
-    Form::Logarithm,
-];
+const OF_A_STOP: &[Form] = Form::TO_A_STOP;
 /// With two signs, of which each may be another case.
 const OF_A_SIDE: &[Form] = Form::FROM_ANYWHERE;
 /// Of a distance: what pulls from there, is touched there, or is stretched from zero on.

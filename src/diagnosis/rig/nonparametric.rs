@@ -25,7 +25,8 @@
 //! What sets in suddenly and decays has rivals that begin at every reading ([`transient`]), what
 //! comes and goes with one period such of two waves ([`swing`]).
 //!
-//! What sets in at a load, or acts one way, has rivals of one number ([`kink`]). What comes and
+//! What sets in at a load, or acts one way, has rivals of one number ([`kink`]), and so has what
+//! jumps at a load ([`step`]). What comes and
 //! goes in time has finer curves besides, of [`FINE`] columns of which the first
 //! half are of one size.
 
@@ -37,6 +38,7 @@ mod cycles;
 mod held_back;
 mod kink;
 mod station;
+mod step;
 mod swing;
 mod transient;
 
@@ -117,6 +119,7 @@ pub(super) fn all(data: &[Datum], deflections: &[f64], (body, place): (&Body, &[
     entries.extend(along_the_load(data));
     entries.extend(all_sensors::under_loads(data, &levels));
     entries.extend(kink::all(data, deflections));
+    entries.extend(step::all(data, &lines, &channels));
     if let Body::Rod(structure) = body {
         entries.extend(slopes(data, deflections, &lines));
         entries.extend(station::along_the_rod(data, structure, place));

@@ -69,9 +69,11 @@ struct Scale {
 
 impl Scale {
     fn of_sensor(evidence: &Evidence, even: &DVector<f64>, rows: &[usize], tails: &Tails) -> Option<Scale> {
+        // what is more than the differences of readings scatter by is no noise
+        let most = rows.iter().fold(0.0, |most: f64, &row| most.max(evidence.noise_range[row].1));
         let of_rows = |rows: &[usize]| {
-            (rows.len() >= FEWEST)
-                .then(|| Scale { scale: tails.scale_of(&even.select_rows(rows)), count: rows.len() })
+            let scale = || tails.scale_of(&even.select_rows(rows)).min(most / evidence.spread[rows[0]]);
+            (rows.len() >= FEWEST).then(|| Scale { scale: scale(), count: rows.len() })
         };
         let whole = of_rows(rows)?;
         let mut series: Vec<usize> = rows.iter().map(|&row| evidence.series[row]).collect();
@@ -189,6 +191,14 @@ mod tests {
         let [_, b, _] = spread(&evidence).unwrap();
         assert!((2.0..4.0).contains(&b), "{b}");
         evidence.noise_range = ranges(0.7);
+        assert_eq!(spread(&evidence), None);
+    }
+
+    /// Two sensors leave a wave that they repeat, and the third none of it.
+    #[test]
+    fn beside_what_others_repeat_no_sensor_is_a_good_one() {
+        let mut evidence = of_noise(1, |sensor, _| [6.0, 6.0, 1.0][sensor]);
+        evidence.noise_range = vec![(0.0, 1.3); 180];
         assert_eq!(spread(&evidence), None);
     }
 

@@ -9,6 +9,7 @@
 //! | rod | the deflection, by a share of it | load with its sign, load before, temperature, time, order |
 //! | slide | the share of the last change of the load that shows | time since |
 //! | sensor | what a channel shows | what it should show |
+//! | sensors | offsets of all channels, under loads along all axes or along each | load |
 //! | sensors | offsets of all channels | time, temperature, order |
 
 use nalgebra::{DVector, Vector3};
@@ -112,6 +113,7 @@ pub fn sites(model: &RigModel, change: &DVector<f64>) -> Vec<Site> {
         };
         sites.push(site);
     }
+    sites.extend(recording.under_loads());
     sites.extend(recording.drifts());
     if deflected.is_imposed {
         // the zero of the load cell
@@ -307,6 +309,38 @@ impl Recording<'_> {
             false => slope[i] / slope[own] * changes[own],
         };
         driven.iter().enumerate().map(beside).collect()
+    }
+
+    /// Laws that add to all channels as a function of the load, wherever that pulls to, or under
+    /// loads along each axis with sizes of their own: the stand of the sensors is moved by it. Of a
+    /// single line that is the clamp.
+    fn under_loads(&self) -> Vec<Site> {
+        let Deflected { sense, load, .. } = self.deflected;
+        let line = |d: &Datum| (d.channel, d.direction.axis);
+        let mut lines: Vec<(Axis, Axis)> = self.data.iter().map(line).collect();
+        lines.sort_unstable();
+        lines.dedup();
+        let mut channels: Vec<Axis> = lines.iter().map(|(channel, _)| *channel).collect();
+        channels.dedup();
+        let weights = |is_its: &dyn Fn(&Datum) -> bool| -> Vec<f64> {
+            let weight = |(d, sense): (&Datum, &f64)| if is_its(d) { *sense } else { 0.0 };
+            self.data.iter().zip(sense).map(weight).collect()
+        };
+        let of_channel = |&channel: &Axis| (format!("d{channel}"), weights(&|d| d.channel == channel));
+        let of_line = |own: &(Axis, Axis)| (format!("d{},{}", own.0, own.1), weights(&|d| line(d) == *own));
+        let site = |directions| {
+            let reading = (Location::Part(Part::Sensors), measure("Δy", "reading", "µm", UM));
+            let plain = self.of_load(reading, LawVariable::Load, (Vec::new(), load.clone()), OF_A_LOAD);
+            Site { directions, ..plain }
+        };
+        let mut found = Vec::new();
+        if lines.len() > 1 {
+            found.push(site(channels.iter().map(of_channel).collect()));
+        }
+        if channels.len() < lines.len() {
+            found.push(site(lines.iter().map(of_line).collect()));
+        }
+        found
     }
 
     /// Laws that add to all channels, each with its own size.

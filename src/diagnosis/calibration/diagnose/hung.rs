@@ -40,6 +40,9 @@ const TRIED: [(Hung, &[f64]); 3] = [
 const LIGHTEST_ROD: f64 = -0.9;
 /// Times that a robot is calibrated once more beside what is found about it.
 const FOLLOWED: usize = 3;
+/// Ln of the odds by which the next of them has to be the likelier one, or to name something else,
+/// to be followed on.
+const ONWARD: f64 = 1.0;
 /// Times that the steps about the best one are halved.
 const HALVED: usize = 4;
 
@@ -151,7 +154,10 @@ impl<'c> Found<'c> {
         let Some(beside) = again.another().filter(|_| times > 0) else { return Ok(self) };
         let look = FirstLook { left: Some(model.by_row(left)), carried: beside.carried, ..look.clone() };
         let next = Prepared::about(model.campaign, model.calibration.clone(), beside.about, &look)?;
-        let next = Found::about(next, true).followed(&look, times - 1)?;
+        let next = Found::about(next, true);
+        let is_there =
+            next.named() == self.named() && next.log_probability() < self.log_probability() + ONWARD;
+        let next = next.followed(&look, if is_there { 0 } else { times - 1 })?;
         let worth = |own: &Found| (own.holds, own.log_probability());
         Ok(if worth(&self) > worth(&next) { self } else { next })
     }

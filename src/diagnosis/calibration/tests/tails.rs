@@ -55,11 +55,11 @@ fn the_farthest_of_a_few_poses_is_not_misread_and_one_that_no_tail_throws_is() {
         });
         (named.collect::<Vec<_>>(), open.collect::<Vec<_>>())
     };
-    let clean: Vec<_> = (0..24).map(|seed| said(seed, 0.0)).collect();
+    let clean: Vec<_> = (0..12).map(|seed| said(seed, 0.0)).collect();
     let named: Vec<_> = clean.iter().filter(|(named, _)| !named.is_empty()).collect();
     assert!(named.is_empty(), "{named:?}");
     let open = clean.iter().filter(|(_, open)| !open.is_empty()).count();
-    assert!(open <= 6, "{open}");
+    assert!(open <= 3, "{open}");
     for seed in 1..=2 {
         assert_eq!(said(seed, 0.8 * MM), (vec!["pose 17".to_owned()], vec![]), "seed {seed}");
         assert_eq!(said(seed, 0.3 * MM), (vec![], vec!["pose 17".to_owned()]), "seed {seed}");

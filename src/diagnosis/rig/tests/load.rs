@@ -68,7 +68,7 @@ fn found(recorded: &Readings) -> (Vec<(&'static str, String)>, [f64; 3]) {
 fn friction_of_a_pulley_is_a_share_of_each_load_and_that_of_a_slide_is_not() {
     let turned =
         |load: f64, share: f64, down: bool| if down { load * (1.0 + share) } else { load * (1.0 - share) };
-    for seed in [1, 2, 3, 4] {
+    for seed in [1, 2] {
         let share = [0.02, 0.05][seed as usize % 2];
         let over_pulley = |axis, load: f64, down| {
             if axis == Axis::Y { turned(load, share, down).min(15.0 * (1.0 - share)) } else { load }
@@ -96,7 +96,7 @@ fn a_pulley_needs_loads_that_are_taken_off() {
 #[test]
 fn what_repeats_with_the_loads_follows_these_and_not_the_time() {
     let c = compliance(&rod(""));
-    for seed in [1, 2, 3] {
+    for seed in [1, 2] {
         for axes in [&[Axis::Z][..], &[Axis::Y, Axis::Z]] {
             let mut random = Random::seeded(seed, 0);
             let mut text = "trial,axis,load_n,time_s,dx_um,dy_um,dz_um\n".to_owned();

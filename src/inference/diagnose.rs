@@ -12,7 +12,6 @@ use crate::inference::held_out::{Theme, hold_out};
 use crate::inference::locate::{Structure, along, locate};
 use crate::inference::model::evidence::rms;
 use crate::inference::noise::in_common::wandering;
-use crate::inference::noise::lack_of_fit::scatter_of_repeats;
 use crate::inference::noise::own_noise::{CLEARLY, own_spread};
 use crate::inference::noise::scatter::{NoiseTest, Tails, in_spread};
 use crate::inference::noise::suspects::are_many;
@@ -21,7 +20,7 @@ use crate::inference::search::findings::findings;
 use crate::inference::search::hidden_in_noise::hidden_in_noise;
 use crate::inference::search::parts::part;
 use crate::inference::search::pruning::{infer, settled};
-use crate::inference::search::selection::{DiscrepancyModel, NAMED, Pairs};
+use crate::inference::search::selection::{DiscrepancyModel, Pairs};
 use crate::inference::{
     Covariate, Diagnosis, Discrepancy, Evidence, FindingPart, ForwardModel, Hypothesis, ShownBy, Term,
 };
@@ -178,10 +177,7 @@ fn diagnose_in(whole: &dyn ForwardModel, recorded: &Evidence, noises: usize) -> 
         None => None,
     };
     // what repeats is no noise, even where no curve draws all of it
-    let repeats = left_over.as_ref().and_then(|_| {
-        let test = search.lack_of_fit(longest, &(&evidence.residual - &left))?;
-        (evidence.information * test.log_odds() > NAMED.ln()).then(|| scatter_of_repeats(evidence, &left))?
-    });
+    let repeats = left_over.as_ref().and_then(|_| search.scatter_beside_repeats(longest, &left));
     let noise = repeats.map_or(noise, |repeats| repeats.min(noise));
     let coverage_factor = student_t_quantile(0.975, degrees_of_freedom).unwrap_or(HALF_95);
     let worth = longest.background_worth();

@@ -28,6 +28,7 @@ use crate::inference::noise::scatter::in_spread;
 use crate::inference::noise::whitening::Whitening;
 use crate::inference::score::ColumnBlock;
 use crate::inference::score::priors::priors;
+use crate::inference::search::selection::NAMED;
 use crate::inference::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Parameter, Term};
 use crate::linalg::transposed_product;
 use crate::parallel::in_parallel_outside_of_jobs;
@@ -309,6 +310,14 @@ impl<'a> Search<'a> {
         let absorbed = self.evidence.residual.len() - self.whitening.degrees_of_freedom;
         let left = &self.evidence.residual - predicted;
         self.replicates.as_ref()?.test(&self.whitening.whitened(&left), parameters + absorbed)
+    }
+
+    /// What repeats scatter by where the averages of what a hypothesis leaves, `left`, are surely
+    /// off by more than that; see [`Replicates::scatter`].
+    pub fn scatter_beside_repeats(&self, hypothesis: &Hypothesis, left: &DVector<f64>) -> Option<f64> {
+        let test = self.lack_of_fit(hypothesis, &(&self.evidence.residual - left))?;
+        let is_sure = self.evidence.information * test.log_odds() > NAMED.ln();
+        self.replicates.as_ref().filter(|_| is_sure).map(|own| own.scatter(self.evidence, left))
     }
 
     /// What a hypothesis says of all data of `evidence`, of which this search may have seen only a

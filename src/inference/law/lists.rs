@@ -3,7 +3,7 @@
 use super::form::Form;
 
 impl Form {
-    /// All of them, in such an order that the next lists begin them.
+    /// All of them, in such an order that the next lists are beginnings of it.
     pub const ALL: [Form; 22] = [
         Form::Power,
         Form::PowerAfterGap,

@@ -8,8 +8,6 @@
 //! (N. R. Draper, H. Smith, *Applied Regression Analysis*, 3rd ed., ch. 2: lack of fit and pure
 //! error). A shape that no smooth curve describes is seen here.
 
-use std::collections::BTreeMap;
-
 use nalgebra::DVector;
 
 use crate::inference::model::evidence::Evidence;
@@ -44,28 +42,6 @@ impl LackOfFit {
             false => -1.0,
         }
     }
-}
-
-/// What repeats scatter by about their own averages, m: √(Σ w·(r − r̄)²/(n − c)) of what a
-/// hypothesis leaves, zeros of runs included, whatever the averages are off by; `None` without
-/// repeats.
-pub fn scatter_of_repeats(evidence: &Evidence, left: &DVector<f64>) -> Option<f64> {
-    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    evidence
-        .replicate_group
-        .iter()
-        .enumerate()
-        .for_each(|(i, group)| groups.entry(*group).or_default().push(i));
-    let freedom = left.len() - groups.len();
-    let square: f64 = groups
-        .values()
-        .map(|own| {
-            let all: f64 = own.iter().map(|&i| evidence.weight[i]).sum();
-            let mean = own.iter().map(|&i| evidence.weight[i] * left[i]).sum::<f64>() / all;
-            own.iter().map(|&i| evidence.weight[i] * (left[i] - mean).powi(2)).sum::<f64>()
-        })
-        .sum();
-    (freedom > 0).then(|| (square / freedom as f64).sqrt())
 }
 
 /// The space of what is the same in all repeats: A the indicators of the replicates, W what
@@ -133,6 +109,21 @@ impl Replicates {
             square = next;
         }
         found
+    }
+
+    /// What repeats scatter by about their own averages, m: √(Σ w·(r − r̄)²/(n − c)) of what a
+    /// hypothesis leaves, zeros of runs included, whatever the averages are off by.
+    pub fn scatter(&self, evidence: &Evidence, left: &DVector<f64>) -> f64 {
+        let mut weights: DVector<f64> = DVector::zeros(self.diagonal.len());
+        let mut sums = weights.clone();
+        for ((&group, w), r) in self.group.iter().zip(&evidence.weight).zip(left) {
+            weights[group] += w;
+            sums[group] += w * r;
+        }
+        let means = sums.component_div(&weights);
+        let own = self.group.iter().zip(&evidence.weight).zip(left);
+        let square: f64 = own.map(|((&group, w), r)| w * (r - means[group]).powi(2)).sum();
+        (square / (left.len() - means.len()) as f64).sqrt()
     }
 
     /// Tests the whitened residual `w` that a hypothesis of `parameters` leaves.
@@ -203,8 +194,7 @@ mod tests {
         };
         let left = DVector::from_column_slice(&[11.0, 12.0, 13.0, -5.0, 0.0]);
         // 2 and 1·1² + ¼·4² beside −4, of three degrees of freedom
-        assert!((scatter_of_repeats(&evidence, &left).unwrap() - (7.0_f64 / 3.0).sqrt()).abs() < 1e-12);
-        assert_eq!(scatter_of_repeats(&Evidence::new(left.clone()), &left), None);
+        assert!((replicates(&evidence).scatter(&evidence, &left) - (7.0_f64 / 3.0).sqrt()).abs() < 1e-12);
     }
 
     fn test(seed: u64, shift: f64) -> LackOfFit {

@@ -19,7 +19,8 @@ pub struct Diagnosis {
     /// What is structured and no effect explains.
     pub discrepancy: Option<Discrepancy>,
     /// Noise of a datum, with what it shares with others: the standard deviation of what is left of
-    /// the data once the hypothesis, and the discrepancy, are taken out.
+    /// the data once the hypothesis, and the discrepancy, are taken out, or of repeats about their
+    /// averages, m, where these are off all the same.
     pub noise: f64,
     /// A stated noise against what is left.
     pub noise_test: NoiseTest,

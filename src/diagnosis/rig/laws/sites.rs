@@ -312,8 +312,8 @@ impl Recording<'_> {
     }
 
     /// Laws that add to all channels as a function of the load, wherever that pulls to, or under
-    /// loads along each axis with sizes of their own: the stand of the sensors is moved by it. Of a
-    /// single line that is the clamp.
+    /// loads along each axis with sizes of their own: the stand of the sensors is moved by it, as
+    /// the load points or one way whichever way that does. Of a single line that is the clamp.
     fn under_loads(&self) -> Vec<Site> {
         let Deflected { sense, load, .. } = self.deflected;
         let line = |d: &Datum| (d.channel, d.direction.axis);
@@ -322,23 +322,33 @@ impl Recording<'_> {
         lines.dedup();
         let mut channels: Vec<Axis> = lines.iter().map(|(channel, _)| *channel).collect();
         channels.dedup();
-        let weights = |is_its: &dyn Fn(&Datum) -> bool| -> Vec<f64> {
-            let weight = |(d, sense): (&Datum, &f64)| if is_its(d) { *sense } else { 0.0 };
-            self.data.iter().zip(sense).map(weight).collect()
-        };
-        let of_channel = |&channel: &Axis| (format!("d{channel}"), weights(&|d| d.channel == channel));
-        let of_line = |own: &(Axis, Axis)| (format!("d{},{}", own.0, own.1), weights(&|d| line(d) == *own));
-        let site = |directions| {
-            let reading = (Location::Part(Part::Sensors), measure("Δy", "reading", "µm", UM));
-            let plain = self.of_load(reading, LawVariable::Load, (Vec::new(), load.clone()), OF_A_LOAD);
-            Site { directions, ..plain }
-        };
+        let one_way = vec![1.0; sense.len()];
         let mut found = Vec::new();
-        if lines.len() > 1 {
-            found.push(site(channels.iter().map(of_channel).collect()));
-        }
-        if channels.len() < lines.len() {
-            found.push(site(lines.iter().map(of_line).collect()));
+        for (sides, said) in [(sense, ""), (&one_way, " (whichever way the load points)")] {
+            if lines.len() < 2 || (!said.is_empty() && *sense == one_way) {
+                continue;
+            }
+            let weights = |is_its: &dyn Fn(&Datum) -> bool| -> Vec<f64> {
+                let weight = |(d, side): (&Datum, &f64)| if is_its(d) { *side } else { 0.0 };
+                self.data.iter().zip(sides).map(weight).collect()
+            };
+            let site = |name: &str, directions| {
+                let reading = measure("Δy", &format!("reading{name}{said}"), "µm", UM);
+                let place = (Location::Part(Part::Sensors), reading);
+                let plain = self.of_load(place, LawVariable::Load, (Vec::new(), load.clone()), OF_A_LOAD);
+                Site { directions, ..plain }
+            };
+            let of_channel = |&own: &Axis| (format!("d{own}"), weights(&|d| d.channel == own));
+            found.push(site("", channels.iter().map(of_channel).collect()));
+            if channels.len() < lines.len() {
+                let of_line = |&own: &(Axis, Axis)| {
+                    let name = format!("d{},{}", own.0, own.1);
+                    (name, weights(&|d| line(d) == own))
+                };
+                let (channel, axis) = lines[lines.len() - 1];
+                let name = format!(" (d{channel},{axis}: d{channel} under loads along {axis})");
+                found.push(site(&name, lines.iter().map(of_line).collect()));
+            }
         }
         found
     }

@@ -86,6 +86,34 @@ pub(super) fn rival(location: Location, parameters: Vec<Parameter>) -> Candidate
     }
 }
 
+/// Which way something moves sensors under loads that point both ways.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Way {
+    /// As the load does.
+    Along,
+    /// The same way whichever way loads point: a stand that sinks.
+    Same,
+}
+
+impl Way {
+    /// Those that are two under the loads of these data.
+    pub fn of(data: &[Datum], group: &[usize]) -> &'static [Way] {
+        match group.iter().any(|&i| data[i].drive() < 0.0) {
+            true => &[Way::Along, Way::Same],
+            false => &[Way::Along],
+        }
+    }
+
+    /// 1 or −1 by the load.
+    pub fn side(self, drive: f64) -> f64 {
+        if self == Way::Along { drive.signum() } else { 1.0 }
+    }
+
+    pub fn in_sentences(self) -> &'static str {
+        if self == Way::Along { "" } else { ", whichever way they point" }
+    }
+}
+
 /// A coordinate from 0 to 1 for each datum; `None` where it has no meaning.
 pub(super) type Coordinate = Vec<Option<f64>>;
 

@@ -1,7 +1,7 @@
 //! What jumps at the same load in every run: a seat that tips over, a stand that is touched.
 //!
 //! ```text
-//! y_c + a_c·sign(F)      |F| > F₀, c the channels concerned
+//! y_c + a_c·sign(F), y_c + a_c      |F| > F₀, c the channels concerned
 //! ```
 //!
 //! F₀ lies between any two loads with two on either side. Runs that all go through the same loads
@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use super::along::{LOAD, by_channel, rival, size};
+use super::along::{LOAD, Way, by_channel, rival, size};
 use crate::diagnosis::rig::effects::entry::{Entry, UNBOUNDED, parameter};
 use crate::diagnosis::rig::mechanics::action::{Action, Weights};
 use crate::diagnosis::rig::recording::datum::Datum;
@@ -49,33 +49,36 @@ pub(super) fn all(
     groups.iter().flat_map(|(place, group)| of_group(data, place, group)).collect()
 }
 
-/// Jumps of some of the data; together they have the prior of one curve.
+/// Jumps of some of the data, also those that point one way whichever way loads do; together they
+/// have the prior of one curve.
 fn of_group(data: &[Datum], place: &str, group: &[usize]) -> Vec<Entry> {
-    let load = |i: usize| data[i].drive().abs();
-    let at = |below: f64, above: f64| {
-        let jumps = |own: Arc<[usize]>| {
-            let sign = |&i: &usize| if load(i) > below { data[i].drive().signum() } else { 0.0 };
-            let values = own.iter().map(sign).collect();
-            let name = format!("d{}_um", data[own[0]].channel);
-            (parameter(&name, 0.0, size(&own, data), UNBOUNDED), Action::Shift(Weights { data: own, values }))
-        };
-        let (parameters, actions) = by_channel(group, data).into_iter().map(jumps).unzip();
-        let said = match group.iter().any(|&i| data[i].imposed.is_some()) {
-            true => format!("{:.3} and {:.3} mm", below * 1e3, above * 1e3),
-            false => format!("{below:.2} and {above:.2} N"),
-        };
-        let location = Location::Curve {
-            label: format!("load, a jump between {said}, {place}"),
-            follows: format!("jumps at the same load in every run, between {said} ({place})"),
-            along: Some(LOAD.variable),
-        };
-        (rival(location, parameters), actions)
-    };
-    let mut found: Vec<Entry> =
-        places(group.iter().map(|&i| load(i)).collect()).into_iter().map(|[a, b]| at(a, b)).collect();
+    let places = places(group.iter().map(|&i| data[i].drive().abs()).collect());
+    let jumps = |way: Way| places.iter().map(move |between| jump(data, (place, group), *between, way));
+    let mut found: Vec<Entry> = Way::of(data, group).iter().flat_map(|way| jumps(*way)).collect();
     let share = 1.0 / found.len().max(1) as f64;
     found.iter_mut().for_each(|(candidate, _)| candidate.weight = share);
     found
+}
+
+fn jump(data: &[Datum], (place, group): (&str, &[usize]), [below, above]: [f64; 2], way: Way) -> Entry {
+    let of_channel = |own: Arc<[usize]>| {
+        let side = |&i: &usize| if data[i].drive().abs() > below { way.side(data[i].drive()) } else { 0.0 };
+        let values = own.iter().map(side).collect();
+        let name = format!("d{}_um", data[own[0]].channel);
+        (parameter(&name, 0.0, size(&own, data), UNBOUNDED), Action::Shift(Weights { data: own, values }))
+    };
+    let (parameters, actions) = by_channel(group, data).into_iter().map(of_channel).unzip();
+    let between = match group.iter().any(|&i| data[i].imposed.is_some()) {
+        true => format!("{:.3} and {:.3} mm", below * 1e3, above * 1e3),
+        false => format!("{below:.2} and {above:.2} N"),
+    };
+    let place = format!("{place}{}", way.in_sentences());
+    let location = Location::Curve {
+        label: format!("load, a jump between {between}, {place}"),
+        follows: format!("jumps at the same load in every run, between {between} ({place})"),
+        along: Some(LOAD.variable),
+    };
+    (rival(location, parameters), actions)
 }
 
 /// Neighbouring loads between which something may jump.
@@ -125,15 +128,18 @@ mod tests {
             "dz under all loads",
             "all sensors under all loads",
         ];
-        assert_eq!(labels, places.map(jump));
-        let (all, actions) = &found[4];
-        let names: Vec<&str> = all.parameters.iter().map(|own| &*own.name).collect();
+        let both = places.iter().flat_map(|place| [jump(place), jump(place) + ", whichever way they point"]);
+        assert_eq!(labels, both.collect::<Vec<_>>());
+        let weights = |k: usize| match &found[k].1[0] {
+            Action::Shift(weights) => weights.iter().map(|(_, weight)| weight).collect::<Vec<f64>>(),
+            _ => panic!("a shift"),
+        };
+        // of the first sensor, as the load points and one way
+        assert_eq!(weights(8), [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0]);
+        assert_eq!(weights(9), [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]);
+        let names: Vec<&str> = found[8].0.parameters.iter().map(|own| &*own.name).collect();
         assert_eq!(names, ["dy_um", "dz_um"]);
-        let Action::Shift(weights) = &actions[0] else { panic!("a shift") };
-        // dy and dz of every row; of the first sensor those of dy
-        let own: Vec<f64> = weights.iter().map(|(_, weight)| weight).collect();
-        assert_eq!(own, [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0]);
-        assert!(found.iter().all(|(candidate, _)| candidate.weight == 1.0));
+        assert!(found.iter().all(|(candidate, _)| candidate.weight == 0.5));
     }
 
     #[test]

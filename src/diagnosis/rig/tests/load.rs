@@ -122,38 +122,47 @@ fn what_repeats_with_the_loads_follows_these_and_not_the_time() {
     }
 }
 
-/// What every run repeats at the same loads is of these: no slips of all runs, no drift, and no
-/// wave over time or order, which come round with them.
+/// A recording of three runs along each of these axes, of sensors that are off by `shape`, µm, in a
+/// channel under a load, N along the axis.
+fn off_by(seed: u64, axes: &[&str], loads: &[f64], shape: &dyn Fn(f64, Axis) -> f64) -> Readings {
+    let (c, mut random) = (compliance(&rod("")), Random::seeded(seed, 0));
+    let mut text = "trial,axis,load_n,time_s,dy_um,dz_um\n".to_owned();
+    let mut time = 0.0;
+    for (axis, trial) in axes.iter().flat_map(|axis| (1..=3).map(move |trial| (axis, trial))) {
+        let along = if axis.ends_with('y') { Axis::Y } else { Axis::Z };
+        let sign = if axis.starts_with('-') { -1.0 } else { 1.0 };
+        let zeros = [0, 1].map(|_| random.normal());
+        for load in loads {
+            time += 60.0 * random.uniform(0.8, 1.3);
+            let [y, z] = [Axis::Y, Axis::Z].map(|channel| {
+                let rod = c[(channel.index(), along.index())] * sign * load / UM;
+                rod + shape(sign * load, channel) + zeros[channel.index() - 1] + random.normal()
+            });
+            text += &format!("{trial},{axis},{load:.1},{time:.0},{y:.1},{z:.1}\n");
+        }
+    }
+    readings(&text)
+}
+
+/// What every run repeats at the same loads is of these: no slips of all runs, no drift, no turned
+/// sensor, and no wave over time or order, which come round with them.
 #[test]
 fn what_every_run_does_at_the_same_load_is_one_law_of_the_load() {
-    let c = compliance(&rod(""));
     // µm in a channel, at so many newtons
     type Shape = fn(f64, Axis) -> f64;
-    let shapes: [(Shape, Form); 4] = [
-        (|load, channel| if load > 6.0 && channel == Axis::Y { 8.0 } else { 0.0 }, Form::Step),
-        (|load, _| 8.0 * load.min(5.0) / 5.0, Form::Saturation),
-        (|load, _| 8.0 * (std::f64::consts::TAU * load / 2.0).sin(), Form::Harmonic),
-        (
-            |load, channel| if channel == Axis::Z { -6.0 * f64::from(u8::from(load > 8.0)) } else { 0.0 },
-            Form::Step,
-        ),
+    const BOTH: &[&str] = &["y", "z"];
+    const SIGNED: &[&str] = &["y", "-y", "z"];
+    let cases: [(&[&str], Shape, Form); 6] = [
+        (BOTH, |load, channel| if load > 6.0 && channel == Axis::Y { 8.0 } else { 0.0 }, Form::Step),
+        (BOTH, |load, _| 8.0 * load.min(5.0) / 5.0, Form::Saturation),
+        (BOTH, |load, _| 8.0 * (std::f64::consts::TAU * load / 2.0).sin(), Form::Harmonic),
+        (BOTH, |load, channel| if load > 8.0 && channel == Axis::Z { -6.0 } else { 0.0 }, Form::Step),
+        (SIGNED, |load, _| if load.abs() > 6.0 { 8.0 } else { 0.0 }, Form::Step),
+        (BOTH, |load, channel| load * [0.0, 1.5, 0.6][channel.index()], Form::Polynomial(1)),
     ];
-    for (seed, (shape, form)) in (1..).zip(shapes) {
-        let mut random = Random::seeded(seed, 0);
-        let mut text = "trial,axis,load_n,time_s,dy_um,dz_um\n".to_owned();
-        let mut time = 0.0;
-        for (axis, trial) in [Axis::Y, Axis::Z].into_iter().flat_map(|axis| (1..=3).map(move |k| (axis, k))) {
-            let zeros = [0, 1].map(|_| random.normal());
-            for load in (1..=30).map(|k| 0.4 * f64::from(k)) {
-                time += 60.0 * random.uniform(0.8, 1.3);
-                let [y, z] = [Axis::Y, Axis::Z].map(|channel| {
-                    let rod = c[(channel.index(), axis.index())] * load / UM;
-                    rod + shape(load, channel) + zeros[channel.index() - 1] + random.normal()
-                });
-                text += &format!("{trial},{axis},{load:.1},{time:.0},{y:.1},{z:.1}\n");
-            }
-        }
-        let found = diagnose(&readings(&text), Some(&rod(""))).unwrap();
+    let loads: Vec<f64> = (1..=30).map(|k| 0.4 * f64::from(k)).collect();
+    for (seed, (axes, shape, form)) in (1..).zip(cases) {
+        let found = diagnose(&off_by(seed, axes, &loads, &shape), Some(&rod(""))).unwrap();
         let names: Vec<&str> = found.diagnosis.findings.iter().map(|own| own.effect.name).collect();
         assert!(names.is_empty(), "{form:?}: {names:?}");
         // readings repeat to 1 µm, and their zeros too: what they repeat is no noise
@@ -162,5 +171,7 @@ fn what_every_run_does_at_the_same_load_is_one_law_of_the_load() {
         let law = found.law.as_ref().and_then(|own| own.laws().next()).expect("a law");
         let said = (law.site.location.to_string(), law.site.variable.symbol, law.form.name());
         assert_eq!(said, ("sensors".to_owned(), "F", form.name()), "{seed}");
+        let is_one_way = law.site.result.name.contains("whichever way");
+        assert_eq!(is_one_way, axes.len() == SIGNED.len(), "{seed}");
     }
 }

@@ -71,5 +71,5 @@ pub use result::finding::{Estimate, Finding, FindingPart, Rival};
 pub use result::proposal::{LoadPlan, Plan, PlannedPose, PosePlan, Proposal};
 pub use result::ranking::{Rank, Ranked, ranking};
 pub use result::untested::{Absorbed, NotTestable};
-pub use search::selection::{APART, NAMED};
+pub use score::priors::{APART, NAMED};
 pub use sketch::{Sketch, sketch};

@@ -12,9 +12,10 @@ use nalgebra::DVector;
 
 use crate::inference::columns::linearised::Linearised;
 use crate::inference::noise::whitening::Whitening;
+use crate::inference::score::priors::APART;
 use crate::inference::search::Search;
 use crate::inference::search::pruning::infer;
-use crate::inference::search::selection::{APART, Pairs};
+use crate::inference::search::selection::Pairs;
 use crate::inference::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Term};
 use crate::parallel::in_parallel;
 use crate::statistics::{Random, percentile_interval};

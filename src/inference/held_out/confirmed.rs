@@ -6,9 +6,10 @@ use nalgebra::DVector;
 use crate::inference::columns::background::Folded;
 use crate::inference::columns::linearised::Linearised;
 use crate::inference::held_out::Theme;
+use crate::inference::score::priors::{APART, NAMED};
 use crate::inference::search::Search;
 use crate::inference::search::parts::{coverage_factor_of, estimates};
-use crate::inference::search::selection::{APART, DiscrepancyModel, NAMED};
+use crate::inference::search::selection::DiscrepancyModel;
 use crate::inference::{FindingPart, ForwardModel, HeldOut, Hypothesis, Kind, Rival, Term};
 
 /// A hypothesis without physics that held-out data do not confirm: where they are predicted no

@@ -13,7 +13,7 @@ use super::remainder::Remainder;
 use super::scan::{Scan, Scanned};
 use super::site::Site;
 use crate::inference::model::evidence::rms;
-use crate::inference::search::selection::APART;
+use crate::inference::score::priors::APART;
 use crate::inference::{Evidence, ForwardModel, Term};
 use crate::linalg::least_squares;
 

@@ -10,7 +10,7 @@ use super::described::Data;
 use super::remainder::Remainder;
 use super::scan::{Scanned, scan_some};
 use super::site::Site;
-use crate::inference::search::selection::{APART, NAMED};
+use crate::inference::score::priors::{APART, NAMED};
 use crate::parallel::in_parallel;
 
 /// By this share of its square a held-out error is lowered at least.

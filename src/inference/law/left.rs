@@ -10,7 +10,7 @@ use super::proposed::{Law, Second};
 use super::remainder::Remainder;
 use super::scan::{Scan, Scanned, refit, scan_as_predicted};
 use super::site::{Measure, Site};
-use crate::inference::search::selection::NAMED;
+use crate::inference::score::priors::NAMED;
 use crate::inference::{Evidence, Location};
 
 /// A law's amplitudes are known to so many times what is left.

@@ -7,7 +7,7 @@ use super::grid;
 use super::peak::{Peak, WIDEST};
 use super::posterior::Posterior;
 use super::site::Site;
-use crate::inference::search::selection::APART;
+use crate::inference::score::priors::APART;
 
 /// Part of the evidence of a law that a first look may miss for each of its numbers that is not
 /// linear: its peak is narrow.

@@ -10,7 +10,7 @@ use super::remainder::Remainder;
 use super::scan::Scanned;
 use super::shape::OfShape;
 use super::site::Site;
-use crate::inference::search::selection::APART;
+use crate::inference::score::priors::APART;
 use crate::statistics::{HALF_95, student_t_quantile};
 
 /// Values of s by which its posterior counts in the amplitudes' intervals.

@@ -13,7 +13,7 @@ use super::scan::{prior, refit, scan, scan_as_predicted};
 use super::site::Site;
 use crate::inference::model::evidence::rms;
 use crate::inference::noise::scatter::weighted;
-use crate::inference::search::selection::NAMED;
+use crate::inference::score::priors::NAMED;
 use crate::inference::{Diagnosis, Evidence, ForwardModel, ShownBy, Term};
 
 /// Laws whose ln odds are so far behind the best are not tried again without each fold.

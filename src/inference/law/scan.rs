@@ -9,8 +9,8 @@ use super::peak::Peak;
 use super::posterior::Posterior;
 use super::remainder::Remainder;
 use super::site::Site;
+use crate::inference::score::priors::APART;
 use crate::inference::score::priors::PRIOR;
-use crate::inference::search::selection::APART;
 use crate::parallel::in_parallel;
 
 /// Columns of a smooth curve.

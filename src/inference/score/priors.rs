@@ -13,6 +13,10 @@ use crate::inference::{Candidate, Kind};
 /// Prior probability that the next effect is none, one of the library, or one that nobody has
 /// named.
 pub const PRIOR: (f64, f64, f64) = (0.5, 0.4, 0.1);
+/// Odds against chance from which on an effect is named.
+pub const NAMED: f64 = 50.0;
+/// Odds within which another explanation counts as indistinguishable: 20 to 1.
+pub const APART: f64 = 20.0;
 /// Share of it that a mistake has: it is named at odds of 1000, where an effect is at 50.
 const MISTAKE: f64 = 0.05;
 

@@ -12,8 +12,9 @@
 //! the evidence of `score.rs`, with the densities of both whitenings.
 
 use crate::inference::columns::linearised::Linearised;
+use crate::inference::score::priors::NAMED;
 use crate::inference::search::Search;
-use crate::inference::search::selection::{DiscrepancyModel, NAMED, Pairs};
+use crate::inference::search::selection::{DiscrepancyModel, Pairs};
 use crate::inference::{Evidence, Term};
 
 /// What is found as if neighbours did not resemble each other, where that is likelier than

@@ -12,8 +12,9 @@
 use crate::inference::columns::linearised::Linearised;
 use crate::inference::noise::own_noise::{POSSIBLY, own_spread};
 use crate::inference::noise::scatter::OFF;
+use crate::inference::score::priors::NAMED;
 use crate::inference::search::Search;
-use crate::inference::search::selection::{DiscrepancyModel, NAMED, Pairs};
+use crate::inference::search::selection::{DiscrepancyModel, Pairs};
 use crate::inference::{Evidence, Hypothesis};
 
 /// Probability beforehand that one sensor is much worse than the others.

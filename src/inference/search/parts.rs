@@ -2,9 +2,9 @@
 //! rivals.
 
 use crate::inference::columns::linearised::Linearised;
+use crate::inference::score::priors::APART;
 use crate::inference::score::priors::rarity;
 use crate::inference::search::Search;
-use crate::inference::search::selection::APART;
 use crate::inference::{
     Candidate, Effect, Estimate, FindingPart, ForwardModel, Hypothesis, Location, Parameter, Rival, Term,
 };

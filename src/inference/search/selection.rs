@@ -1,15 +1,11 @@
 //! Which hypothesis a recording supports: effects are added, exchanged and taken away while that
 //! makes it more probable.
 
-use crate::inference::score::priors::PRIOR;
+use crate::inference::score::priors::{NAMED, PRIOR};
 use crate::inference::search::Search;
 use crate::inference::{Effect, ForwardModel, Hypothesis, Kind, Term};
 use crate::parallel::in_parallel_outside_of_jobs;
 
-/// Odds against chance from which on an effect is named.
-pub const NAMED: f64 = 50.0;
-/// Odds within which another explanation counts as indistinguishable: 20 to 1.
-pub const APART: f64 = 20.0;
 /// A hypothesis of known effects explains as well as one that leaves something unknown within these
 /// odds, if it leaves at most so much more, as a factor, per degree of freedom.
 const AS_WELL: (f64, f64) = (20.0, 1.01);

@@ -14,9 +14,9 @@
 use nalgebra::DMatrix;
 
 use crate::inference::model::evidence::rms;
+use crate::inference::score::priors::NAMED;
 use crate::inference::score::priors::PRIOR;
 use crate::inference::search::Search;
-use crate::inference::search::selection::NAMED;
 use crate::inference::{Covariate, Discrepancy, ForwardModel, Hypothesis, Kind, Location, ShownBy, Term};
 
 /// Size of the curve, as a share of the effect.

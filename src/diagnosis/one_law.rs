@@ -36,6 +36,9 @@ const ALIKE: f64 = 0.995;
 /// A law that leaves at most so much more, as a factor, leaves as little as many names: these may
 /// have a curve beside them, which takes up a part of the scatter.
 const AS_LITTLE: f64 = 1.15;
+/// Ln of the odds by which a law may leave more than a few names at first sight: its constants are
+/// yet to be fitted.
+const BEHIND: f64 = 20.0;
 /// Numbers of the files may be off by so much more beside the law, as a sum of the squares of their
 /// standard uncertainties.
 const FARTHER: f64 = 9.0;
@@ -55,6 +58,15 @@ pub(super) fn names(named: &Diagnosis) -> Vec<&Finding> {
         true => named.findings.iter().collect(),
         false => Vec::new(),
     }
+}
+
+/// Can a law that leaves `left` of the data without names still take the place of those of `named`?
+/// Of many names it needs only fewer numbers.
+pub(super) fn may_do(left: &DVector<f64>, without: &Diagnosis, named: &Diagnosis) -> bool {
+    let curve = named.discrepancy.as_ref().filter(|left| left.shown_by == ShownBy::Curve);
+    let beside_names = curve.map_or_else(|| named.after.clone(), |curve| &named.after - &curve.shape);
+    let are_many = names(named).len() + usize::from(curve.is_some()) >= MANY;
+    are_many || likelier(&without.settled.0, &beside_names, left) > -BEHIND
 }
 
 /// A law that was `proposed` for the same data without names, compared with those of `named`.

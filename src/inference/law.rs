@@ -53,7 +53,7 @@ pub use bouc_wen::LoopShape;
 pub use constant::{Constant, OpenEnd};
 pub use form::{Form, FormConstant};
 pub use memory::Memory;
-pub use proposal::propose;
+pub use proposal::{propose, propose_where};
 pub use proposed::{Beside, Law, LawRival, NextRecord, Point, Proposed, Refusal, Second};
 pub use site::{Course, Instant, Measure, Recorded, Site};
 pub use stops::Stops;

@@ -31,6 +31,17 @@ pub fn propose(
     diagnosis: &Diagnosis,
     sites: &dyn Fn(&DVector<f64>) -> Vec<Site>,
 ) -> Option<Proposed> {
+    propose_where(model, diagnosis, sites, &|_| true)
+}
+
+/// The same, and none where what the likeliest law leaves of the data `is_hopeful` says is too much:
+/// all else takes longer than that law does.
+pub fn propose_where(
+    model: &dyn ForwardModel,
+    diagnosis: &Diagnosis,
+    sites: &dyn Fn(&DVector<f64>) -> Vec<Site>,
+    is_hopeful: &dyn Fn(&DVector<f64>) -> bool,
+) -> Option<Proposed> {
     let left = diagnosis.discrepancy.as_ref()?;
     if matches!(left.shown_by, ShownBy::Suspects | ShownBy::Numbers | ShownBy::Neighbours) {
         return None;
@@ -71,17 +82,20 @@ pub fn propose(
     if best.log_odds < NAMED.ln() {
         return refused(Refusal::Chance, None);
     }
+    let columns = best.choice.columns(&all[best.choice.site], best.at, size).columns;
+    if !is_hopeful(&(&evidence.residual - remainder.fit(&columns).predicted)) {
+        return None;
+    }
     let data = Data { model, evidence, terms, size, sigma };
     // the curve that the diagnosis has found competes too; of one number it is a law itself
     let is_curve = |&candidate: &usize| model.candidates()[candidate].parameters.len() > 1;
     let own_curve = left.candidate.filter(is_curve).map_or(f64::NEG_INFINITY, |curve| {
-        let columns = model.columns(&[model.candidates()[curve].neutral(curve)], 0);
+        let curve = model.columns(&[model.candidates()[curve].neutral(curve)], 0);
         let curves = model.candidates().iter().filter(|candidate| candidate.is_nonparametric);
         let prior = prior(curves.count(), 1);
         // what the law says as well is no other than it: a wave that was found among a few periods
-        let law = best.choice.columns(&all[best.choice.site], best.at, size).columns;
-        match gain_beside(&data, &law, &columns) + prior > 0.0 {
-            true => remainder.fit(&columns).gain + prior,
+        match gain_beside(&data, &columns, &curve) + prior > 0.0 {
+            true => remainder.fit(&curve).gain + prior,
             false => f64::NEG_INFINITY,
         }
     });

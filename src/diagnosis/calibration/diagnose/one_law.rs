@@ -5,9 +5,9 @@ use crate::calibration::Calibration;
 use crate::calibration::campaign::Campaign;
 use crate::diagnosis::Limitation;
 use crate::diagnosis::calibration::laws::sites::sites;
-use crate::diagnosis::one_law::{Instead, compared, names};
+use crate::diagnosis::one_law::{Instead, compared, may_do, names};
 use crate::error::Result;
-use crate::inference::law::{Proposed, propose};
+use crate::inference::law::{Proposed, propose_where};
 use crate::inference::{Diagnosis, ShownBy, diagnose};
 
 /// More names than so many are more than one law can be.
@@ -38,7 +38,10 @@ pub fn instead<'c>(
         return Ok(None);
     }
     let context = &prepared.context;
-    let Some(law) = propose(&prepared.model, &diagnosis, &|change| sites(context, change.len())) else {
+    let is_hopeful = |left: &_| may_do(left, &diagnosis, named);
+    let Some(law) =
+        propose_where(&prepared.model, &diagnosis, &|change| sites(context, change.len()), &is_hopeful)
+    else {
         return Ok(None);
     };
     Ok(compared(&law, &diagnosis, named).map(|instead| match instead {

@@ -69,22 +69,20 @@ pub fn others(
     }
     let Some(given) = mended.rod.as_ref().filter(|_| !mended.others.is_empty()) else { return Ok(found) };
     let compared = Compared::new(model, evidence, diagnosis);
-    let as_rod = |rod: &Rod| RigModel::with_effects(&mended.readings, Some(rod), &Wanted::AllAnd(&model.own));
-    for meant in &mended.others {
-        let mut meant = meant.clone();
-        if meant.is_angled() {
-            meant = meant.sharpened(given, |rod| {
-                let (other, of_other, _) = as_rod(rod).ok()?;
-                let is_alike = of_other.residual.len() == evidence.residual.len();
-                is_alike.then(|| compared.log_odds(&other, &of_other))
-            });
-        }
-        let (other, of_other, _) = as_rod(&meant.rod)?;
-        if of_other.residual.len() != evidence.residual.len() {
-            continue;
-        }
-        let log_odds = compared.log_odds(&other, &of_other) + meant.log_prior + RARE;
-        let explains = rms(&(&evidence.residual - &of_other.residual));
+    let looked = |rod: &Rod| {
+        let wanted = Wanted::AllAnd(&model.own);
+        let (other, of_other, _) = RigModel::with_effects(&mended.readings, Some(rod), &wanted).ok()?;
+        let is_alike = of_other.residual.len() == evidence.residual.len();
+        is_alike.then(|| (compared.log_odds(&other, &of_other), of_other.residual))
+    };
+    for meant in mended.others.iter().cloned() {
+        let looked = match meant.is_angled() {
+            true => meant.sharpened(given, looked),
+            false => looked(&meant.rod).map(|(log_odds, residual)| (meant, log_odds, residual)),
+        };
+        let Some((meant, log_odds, residual)) = looked else { continue };
+        let log_odds = log_odds + meant.log_prior + RARE;
+        let explains = rms(&(&evidence.residual - &residual));
         let mut rivals = Vec::new();
         if meant.is_angled() {
             let by = meant.rod.gamma - given.gamma;

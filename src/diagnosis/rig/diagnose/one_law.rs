@@ -1,12 +1,12 @@
 //! The readings of a rig without names, where one law does as well.
 
 use crate::diagnosis::Limitation;
-use crate::diagnosis::one_law::{Instead, compared, names};
+use crate::diagnosis::one_law::{Instead, compared, may_do, names};
 use crate::diagnosis::rig::laws::sites;
 use crate::diagnosis::rig::model::RigModel;
 use crate::diagnosis::rig::model::wanted::Wanted;
 use crate::error::Result;
-use crate::inference::law::{Proposed, propose};
+use crate::inference::law::{Proposed, propose_where};
 use crate::inference::{Diagnosis, Evidence, ShownBy, diagnose};
 use crate::rig::readings::Readings;
 use crate::rod::Rod;
@@ -34,7 +34,9 @@ pub(super) fn instead(
     if !diagnosis.discrepancy.as_ref().is_some_and(|left| left.shown_by == ShownBy::Curve) {
         return Ok(None);
     }
-    let Some(law) = propose(&model, &diagnosis, &|change| sites::sites(&model, change)) else {
+    let is_hopeful = |left: &_| may_do(left, &diagnosis, named);
+    let Some(law) = propose_where(&model, &diagnosis, &|change| sites::sites(&model, change), &is_hopeful)
+    else {
         return Ok(None);
     };
     Ok(compared(&law, &diagnosis, named).map(|instead| match instead {

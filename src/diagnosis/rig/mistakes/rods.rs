@@ -117,18 +117,35 @@ impl OtherRod {
         self.effect == &ANGLE_MISTAKE
     }
 
-    /// The `given` rod with the angle, of those up to five degrees away, that is `likeliest`.
-    pub(in crate::diagnosis::rig) fn sharpened(
+    /// The `given` rod with the angle that is likeliest, and what `look` says of it besides ln of
+    /// how likely it is: from this one on degree by degree, as far as each is likelier than the one
+    /// before.
+    pub(in crate::diagnosis::rig) fn sharpened<T>(
         self,
         given: &Rod,
-        likeliest: impl Fn(&Rod) -> Option<f64>,
-    ) -> OtherRod {
+        look: impl Fn(&Rod) -> Option<(f64, T)>,
+    ) -> Option<(OtherRod, f64, T)> {
         const WITHIN_DEG: i32 = 5;
         let middle = self.rod.gamma.to_degrees();
-        let angles = (-WITHIN_DEG..=WITHIN_DEG).map(|by| OtherRod::of_angle(given, middle + f64::from(by)));
-        let known = angles.filter(|other| is_possible(&other.rod));
-        let known = known.filter_map(|other| Some((likeliest(&other.rod)?, other)));
-        known.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(self, |(_, other)| other)
+        let at = |by: i32| {
+            let other = OtherRod::of_angle(given, middle + f64::from(by));
+            let (likely, besides) = is_possible(&other.rod).then(|| look(&other.rod))??;
+            Some((other, likely, besides))
+        };
+        let mut best = at(0)?;
+        for way in [1, -1] {
+            let first = best.1;
+            for by in 1..=WITHIN_DEG {
+                match at(way * by).filter(|next| next.1 > best.1) {
+                    Some(next) => best = next,
+                    None => break,
+                }
+            }
+            if best.1 > first {
+                break;
+            }
+        }
+        Some(best)
     }
 
     fn mistake(self) -> (Body, PossibleMistake) {

@@ -34,8 +34,8 @@ pub fn propose(
     propose_where(model, diagnosis, sites, &|_| true)
 }
 
-/// The same, and none where what the likeliest law leaves of the data `is_hopeful` says is too much:
-/// all else takes longer than that law does.
+/// The same, but `None` where `is_hopeful` denies what the likeliest law leaves of the data, before
+/// any law is held out: that takes longer than to find it.
 pub fn propose_where(
     model: &dyn ForwardModel,
     diagnosis: &Diagnosis,

@@ -258,4 +258,24 @@ mod tests {
         };
         assert_eq!([0.7, 0.85, 1.0, 1.2, 1.4].map(tried), [false, true, true, true, false]);
     }
+    /// From where the slopes have it the angle goes uphill, either way, and no farther than it has
+    /// to.
+    #[test]
+    fn an_angle_is_sharpened_uphill() {
+        let given = Rod::read("rods/2.toml".as_ref()).unwrap();
+        let found = |best: i32| {
+            let seen = std::cell::Cell::new(0);
+            let look = |rod: &Rod| {
+                seen.set(seen.get() + 1);
+                let angle = rod.gamma.to_degrees().round();
+                Some((-(angle - f64::from(best)).powi(2), angle))
+            };
+            let (other, likely, angle) = OtherRod::of_angle(&given, 130.0).sharpened(&given, look).unwrap();
+            assert!((other.rod.gamma.to_degrees() - angle).abs() < 1e-9 && likely <= 0.0);
+            (angle as i32, seen.get())
+        };
+        assert_eq!([130, 132, 128, 140].map(found), [(130, 3), (132, 4), (128, 5), (135, 6)]);
+        let is_none = OtherRod::of_angle(&given, 130.0).sharpened(&given, |_| None::<(f64, ())>).is_none();
+        assert!(is_none);
+    }
 }

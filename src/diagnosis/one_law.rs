@@ -36,9 +36,9 @@ const ALIKE: f64 = 0.995;
 /// A law that leaves at most so much more, as a factor, leaves as little as many names: these may
 /// have a curve beside them, which takes up a part of the scatter.
 const AS_LITTLE: f64 = 1.15;
-/// Ln of the odds by which a law may leave more than a few names at first sight: its constants are
-/// yet to be fitted.
-const BEHIND: f64 = 20.0;
+/// Ln of the odds by which a law may be behind a few names at first sight: it may yet have a number
+/// more.
+const BEHIND: f64 = 10.0;
 /// Numbers of the files may be off by so much more beside the law, as a sum of the squares of their
 /// standard uncertainties.
 const FARTHER: f64 = 9.0;
@@ -60,50 +60,85 @@ pub(super) fn names(named: &Diagnosis) -> Vec<&Finding> {
     }
 }
 
-/// Can a law that leaves `left` of the data without names still take the place of those of `named`?
-/// Of many names it needs only fewer numbers.
+/// What a diagnosis needs to explain the data by names.
+struct Needed {
+    /// Names, a curve beside them counted as one.
+    count: usize,
+    /// Their numbers.
+    numbers: usize,
+    /// How far off the numbers of the files are beside them, as Σ z².
+    square: f64,
+    /// What they leave of the data, m.
+    left: DVector<f64>,
+}
+
+impl Needed {
+    fn by(named: &Diagnosis, evidence: &Evidence) -> Needed {
+        let names = names(named);
+        let numbers = names.iter().map(|finding| finding.estimates.len()).sum();
+        let square = square(evidence, named.hypothesis.background.as_slice());
+        let own = Needed { count: names.len(), numbers, square, left: named.after.clone() };
+        match named.discrepancy.as_ref().filter(|left| left.shown_by == ShownBy::Curve) {
+            Some(curve) => {
+                let left = &named.after - &curve.shape;
+                Needed { count: own.count + 1, numbers: numbers + OF_CURVE, left, ..own }
+            }
+            None => own,
+        }
+    }
+
+    fn are_many(&self) -> bool {
+        self.count >= MANY
+    }
+
+    /// Can a law that leaves `left` be as likely, were it of one number and the files' numbers as
+    /// they say? In the place of many names it needs only fewer numbers.
+    fn may_be_one(&self, evidence: &Evidence, left: &DVector<f64>) -> bool {
+        let leaves_less = likelier(evidence, &self.left, left);
+        let more_numbers = 1.0 - self.numbers as f64;
+        let at_best = odds(leaves_less, -self.square, more_numbers, left.len() as f64);
+        self.are_many() || at_best > -BEHIND
+    }
+}
+
+/// How far off the numbers of the files are, as Σ z².
+fn square(evidence: &Evidence, background: &[f64]) -> f64 {
+    evidence.folded.clone().filter_map(|k| background.get(k)).map(|z| z * z).sum()
+}
+
+/// Can a law that leaves `left` of the data `without` names take the place of those of `named`?
 pub(super) fn may_do(left: &DVector<f64>, without: &Diagnosis, named: &Diagnosis) -> bool {
-    let curve = named.discrepancy.as_ref().filter(|left| left.shown_by == ShownBy::Curve);
-    let beside_names = curve.map_or_else(|| named.after.clone(), |curve| &named.after - &curve.shape);
-    let are_many = names(named).len() + usize::from(curve.is_some()) >= MANY;
-    are_many || likelier(&without.settled.0, &beside_names, left) > -BEHIND
+    let evidence = &without.settled.0;
+    Needed::by(named, evidence).may_be_one(evidence, left)
 }
 
 /// A law that was `proposed` for the same data without names, compared with those of `named`.
 pub(super) fn compared(proposed: &Proposed, without: &Diagnosis, named: &Diagnosis) -> Option<Instead> {
-    let (law, names) = (proposed.law.as_ref().ok()?, names(named));
-    let curve = named.discrepancy.as_ref().filter(|left| left.shown_by == ShownBy::Curve);
-    let has_curve = curve.is_some();
-    let of_names = names.iter().map(|finding| finding.estimates.len()).sum::<usize>();
-    let numbers = of_names + if has_curve { OF_CURVE } else { 0 };
-    // what numbers of the files are then, as Σ z²
-    let square = |background: &[f64]| -> f64 {
-        without.settled.0.folded.clone().filter_map(|k| background.get(k)).map(|z| z * z).sum()
-    };
-    let farther = square(&law.beside.background) - square(named.hypothesis.background.as_slice());
-    let count = without.settled.0.residual.len() as f64;
-    let more_numbers = numbers_of(law) as f64 - numbers as f64;
-    let beside_names = curve.map_or_else(|| named.after.clone(), |curve| &named.after - &curve.shape);
+    let (law, evidence) = (proposed.law.as_ref().ok()?, &without.settled.0);
+    let needed = Needed::by(named, evidence);
+    let farther = square(evidence, &law.beside.background) - needed.square;
+    let more_numbers = numbers_of(law) as f64 - needed.numbers as f64;
     let left = DVector::from_column_slice(&law.left);
     // as many numbers, and none of them says how it bends: the names say the same
     let has_a_shape = law.constant.is_some() || !law.of_shape.is_empty() || law.second.is_some();
     if !has_a_shape && more_numbers >= 0.0 {
-        let explained = [&named.before - &beside_names, &without.before - &left];
-        if are_alike(&without.settled.0, &explained) {
+        let explained = [&named.before - &needed.left, &without.before - &left];
+        if are_alike(evidence, &explained) {
             return None;
         }
     }
-    let leaves_less = likelier(&without.settled.0, &beside_names, &left);
-    let log_odds = odds(leaves_less, farther, more_numbers, count);
+    let leaves_less = likelier(evidence, &needed.left, &left);
+    let log_odds = odds(leaves_less, farther, more_numbers, left.len() as f64);
     // both searches are repeated without each fold
     let own = law.held_out.into_iter().chain(proposed.held_out.map(|(_, with)| with));
     let (own, after) = (own.reduce(f64::max)?, named.held_out.as_ref()?.after);
     if own > after || farther >= FARTHER || law.more.is_some() {
         return None;
     }
-    let are_many = names.len() + usize::from(has_curve) >= MANY;
     let is_as_little = law.noise <= AS_LITTLE * named.noise;
-    let is_simpler = are_many && more_numbers < 0.0 && is_as_little;
+    let is_simpler = needed.are_many() && more_numbers < 0.0 && is_as_little;
+    let names = names(named);
+    let of_names = names.iter().map(|finding| finding.estimates.len()).sum::<usize>();
     let mut causes: Vec<&str> = names.iter().map(|finding| finding.effect.cause).collect();
     causes.dedup();
     // of two laws at once many are as likely as a name by chance
@@ -178,6 +213,21 @@ mod tests {
     #[test]
     fn a_number_has_its_price() {
         assert!(odds(0.0, 0.0, 1.0, 60.0) < -2.0 && odds(0.0, -9.0, 0.0, 60.0) > NAMED.ln());
+    }
+
+    /// By as much as its fewer numbers, and numbers of the files that are as they say, may be worth
+    /// and by ten more.
+    #[test]
+    fn a_law_that_leaves_far_more_than_a_name_is_hopeless() {
+        let left = DVector::from_fn(40, |k, _| if k % 2 == 0 { 1.0 } else { -1.0 });
+        let evidence = Evidence::new(left.clone());
+        let needed = |count, numbers, square| Needed { count, numbers, square, left: left.clone() };
+        let may = |needed: Needed, times: f64| needed.may_be_one(&evidence, &(&left * times));
+        // 20·ln 1.6² = 18.8 behind
+        assert!(may(needed(1, 2, 0.0), 1.2) && !may(needed(1, 2, 0.0), 1.6));
+        assert!(may(needed(1, 6, 0.0), 1.6) && may(needed(1, 2, 16.0), 1.6));
+        // many names it may leave more than, if it is simpler
+        assert!(may(needed(3, 2, 0.0), 1.6));
     }
 
     #[test]

@@ -140,7 +140,7 @@ pub fn diagnose_with(
     if mended.take_zeros_back(&diagnosis.findings) {
         (model, evidence, not_testable, diagnosis) = inferred(&mended, None)?;
     }
-    let mut others = another_rod::others(&mended, &model, &evidence, &diagnosis)?;
+    let mut others = another_rod::others(&mended, &model, &evidence, &diagnosis);
     another_rod::add_rivals(&others, &model, &mut diagnosis);
     if let Some(meant) = others.first().filter(|meant| meant.is_meant()) {
         let mut taken = mended.clone();

@@ -9,8 +9,7 @@ use super::peak::Peak;
 use super::posterior::Posterior;
 use super::remainder::Remainder;
 use super::site::Site;
-use crate::inference::score::priors::APART;
-use crate::inference::score::priors::PRIOR;
+use crate::inference::score::priors::{APART, PRIOR};
 use crate::parallel::in_parallel;
 
 /// Columns of a smooth curve.

@@ -2,8 +2,7 @@
 //! rivals.
 
 use crate::inference::columns::linearised::Linearised;
-use crate::inference::score::priors::APART;
-use crate::inference::score::priors::rarity;
+use crate::inference::score::priors::{APART, rarity};
 use crate::inference::search::Search;
 use crate::inference::{
     Candidate, Effect, Estimate, FindingPart, ForwardModel, Hypothesis, Location, Parameter, Rival, Term,

@@ -14,8 +14,7 @@
 use nalgebra::DMatrix;
 
 use crate::inference::model::evidence::rms;
-use crate::inference::score::priors::NAMED;
-use crate::inference::score::priors::PRIOR;
+use crate::inference::score::priors::{NAMED, PRIOR};
 use crate::inference::search::Search;
 use crate::inference::{Covariate, Discrepancy, ForwardModel, Hypothesis, Kind, Location, ShownBy, Term};
 

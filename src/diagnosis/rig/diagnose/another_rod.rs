@@ -11,7 +11,6 @@ use crate::diagnosis::rig::mechanics::action::Action;
 use crate::diagnosis::rig::mistakes::{Mended, ODDS, OtherRod, RARE};
 use crate::diagnosis::rig::model::RigModel;
 use crate::diagnosis::rig::model::wanted::Wanted;
-use crate::error::Result;
 use crate::inference::{
     Compared, Diagnosis, Evidence, Finding, ForwardModel, Kind, Location, Part, Rival, rms,
 };
@@ -56,18 +55,13 @@ pub fn is_cured(explains: f64, diagnosis: &Diagnosis) -> bool {
 
 /// The other rods that the readings may be of, the likeliest first; none where they agree with the
 /// given one.
-pub fn others(
-    mended: &Mended,
-    model: &RigModel,
-    evidence: &Evidence,
-    diagnosis: &Diagnosis,
-) -> Result<Vec<Other>> {
+pub fn others(mended: &Mended, model: &RigModel, evidence: &Evidence, diagnosis: &Diagnosis) -> Vec<Other> {
     let mut found = Vec::new();
     let may_be_another = |finding: &Finding| is_of_the_rod(model, finding) || is_a_turn(model, finding);
     if diagnosis.discrepancy.is_none() && !diagnosis.findings.iter().any(may_be_another) {
-        return Ok(found);
+        return found;
     }
-    let Some(given) = mended.rod.as_ref().filter(|_| !mended.others.is_empty()) else { return Ok(found) };
+    let Some(given) = mended.rod.as_ref().filter(|_| !mended.others.is_empty()) else { return found };
     let compared = Compared::new(model, evidence, diagnosis);
     let looked = |rod: &Rod| {
         let wanted = Wanted::AllAnd(&model.own);
@@ -97,7 +91,7 @@ pub fn others(
         found.push(Other { rod: meant, log_odds, explains, rivals });
     }
     found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
-    Ok(found)
+    found
 }
 
 /// Where two rods are indistinguishable, what makes the given one fit has the other as its rival.

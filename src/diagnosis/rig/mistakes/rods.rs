@@ -117,9 +117,9 @@ impl OtherRod {
         self.effect == &ANGLE_MISTAKE
     }
 
-    /// The `given` rod with the angle that is likeliest, and what `look` says of it besides ln of
-    /// how likely it is: from this one on degree by degree, as far as each is likelier than the one
-    /// before.
+    /// The `given` rod with the angle, of those up to five degrees away, that is likeliest, and
+    /// what `look` says of it: ln of how likely it is, and what else. Those between may be less likely,
+    /// for each has its own effects.
     pub(in crate::diagnosis::rig) fn sharpened<T>(
         self,
         given: &Rod,
@@ -127,25 +127,12 @@ impl OtherRod {
     ) -> Option<(OtherRod, f64, T)> {
         const WITHIN_DEG: i32 = 5;
         let middle = self.rod.gamma.to_degrees();
-        let at = |by: i32| {
-            let other = OtherRod::of_angle(given, middle + f64::from(by));
-            let (likely, besides) = is_possible(&other.rod).then(|| look(&other.rod))??;
+        let angles = (-WITHIN_DEG..=WITHIN_DEG).map(|by| OtherRod::of_angle(given, middle + f64::from(by)));
+        let looked = angles.filter(|other| is_possible(&other.rod)).filter_map(|other| {
+            let (likely, besides) = look(&other.rod)?;
             Some((other, likely, besides))
-        };
-        let mut best = at(0)?;
-        for way in [1, -1] {
-            let first = best.1;
-            for by in 1..=WITHIN_DEG {
-                match at(way * by).filter(|next| next.1 > best.1) {
-                    Some(next) => best = next,
-                    None => break,
-                }
-            }
-            if best.1 > first {
-                break;
-            }
-        }
-        Some(best)
+        });
+        looked.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     fn mistake(self) -> (Body, PossibleMistake) {
@@ -258,23 +245,21 @@ mod tests {
         };
         assert_eq!([0.7, 0.85, 1.0, 1.2, 1.4].map(tried), [false, true, true, true, false]);
     }
-    /// From where the slopes have it the angle goes uphill, either way, and no farther than it has
-    /// to.
+    /// Wherever it is within five degrees of where the slopes have it, beyond less likely ones too.
     #[test]
-    fn an_angle_is_sharpened_uphill() {
+    fn an_angle_is_the_likeliest_of_all_nearby() {
         let given = Rod::read("rods/2.toml".as_ref()).unwrap();
         let found = |best: i32| {
-            let seen = std::cell::Cell::new(0);
             let look = |rod: &Rod| {
-                seen.set(seen.get() + 1);
                 let angle = rod.gamma.to_degrees().round();
-                Some((-(angle - f64::from(best)).powi(2), angle))
+                let hill = |at: f64, top: f64| top - (angle - at).powi(2);
+                Some((hill(130.0, -1.0).max(hill(f64::from(best), 0.0)), angle))
             };
             let (other, likely, angle) = OtherRod::of_angle(&given, 130.0).sharpened(&given, look).unwrap();
             assert!((other.rod.gamma.to_degrees() - angle).abs() < 1e-9 && likely <= 0.0);
-            (angle as i32, seen.get())
+            angle as i32
         };
-        assert_eq!([130, 132, 128, 140].map(found), [(130, 3), (132, 4), (128, 5), (135, 6)]);
+        assert_eq!([130, 132, 126, 134, 140].map(found), [130, 132, 126, 134, 130]);
         let is_none = OtherRod::of_angle(&given, 130.0).sharpened(&given, |_| None::<(f64, ())>).is_none();
         assert!(is_none);
     }

@@ -118,8 +118,8 @@ impl OtherRod {
     }
 
     /// The `given` rod with the angle, of those up to five degrees away, that is likeliest, and
-    /// what `look` says of it: ln of how likely it is, and what else. Those between may be less likely,
-    /// for each has its own effects.
+    /// what `look` says of it: ln of how likely it is, and what else. Those between may be less
+    /// likely, for each has its own effects.
     pub(in crate::diagnosis::rig) fn sharpened<T>(
         self,
         given: &Rod,

@@ -4,6 +4,7 @@ pub mod arrival;
 pub mod beside;
 pub mod coarse_angles;
 pub mod forward_model;
+pub mod hidden_mass;
 pub mod hung;
 pub mod leverage;
 pub mod limits;
@@ -16,6 +17,7 @@ pub mod tails;
 use self::arrival::unknown_arrival;
 use self::beside::{calibrated_beside, unequal};
 use self::coarse_angles::coarse_angles;
+use self::hidden_mass::may_be_hidden;
 use self::hung::{BesideMasses, beside_hidden_masses, may_bend, may_hide, with_rivals};
 use self::limits::{far_out, limits, noisy};
 use self::memory::check_memory;
@@ -134,9 +136,9 @@ pub fn diagnose_calibrated<'c>(
     // what nothing explains may be what such a mass has left
     let may_be_a_mass =
         diagnosis.discrepancy.as_ref().is_some_and(|left| left.shown_by != ShownBy::Neighbours);
-    if !may_hide_masses && may_be_a_mass && may_bend(&prepared) {
+    if !may_hide_masses && may_be_a_mass && may_bend(&prepared) && may_be_hidden(&prepared.model) {
         let is_another;
-        BesideMasses { prepared, rivals, is_another } = beside_hidden_masses(campaign, prepared, &look)?;
+        BesideMasses { prepared, rivals, is_another, .. } = beside_hidden_masses(campaign, prepared, &look)?;
         if is_another {
             diagnosis = infer(&prepared.model, &prepared.evidence);
         }

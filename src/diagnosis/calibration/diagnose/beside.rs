@@ -72,6 +72,13 @@ pub fn is_load(model: &CalibrationModel, own: Hung) -> bool {
     own.rows_on_flange(0).is_some() || model.campaign.rod.is_none() || model.calibration.mode != Mode::None
 }
 
+impl<'c> Beside<'c> {
+    /// A robot as it was calibrated.
+    pub fn nothing(calibration: Calibration<'c>) -> Beside<'c> {
+        Beside { about: calibration.clone(), calibration, carried: Vec::new() }
+    }
+}
+
 impl Loads {
     /// One mass; of a rod so many times its own more.
     pub fn one(own: Hung, mass: f64) -> Loads {

@@ -4,47 +4,32 @@
 //! calibration that knows of none turns its weight into soft drives, about which a mass at the tip
 //! draws something else: a rod that bends under its weight is then nearer to what is left. Where
 //! rod or masses are what is found, each mass is therefore sought as the calibration itself would
-//! see it, by its residual,
-//!
-//! ```text
-//! m = argmin_m  min_ρ |recorded − predicted(ρ; m)|²
-//! ```
-//!
-//! and the search is made about that robot too. Where several loads are found, what it took two to
-//! explain about a robot that was calibrated with neither, one may explain about its own: a robot
-//! beside each of them alone is sought as well, and is the better one at the odds of any finding.
+//! see it (`hidden_mass.rs`), and the search is made about that robot too. Where several loads are
+//! found, what it took two to explain about a robot that was calibrated with neither, one may
+//! explain about its own: a robot beside each of them alone is sought as well, and is the better
+//! one at the odds of any finding.
 //!
 //! What is found about a robot is asked again about the one that is calibrated beside it, and
 //! counts where that one leaves what it says: drives that turn by a weight make columns that say
 //! nothing of the arm without it.
 
 use super::beside::{Again, Beside, Loads, calibrated_beside, calibrated_with, is_load};
+use super::hidden_mass::beside_masses;
 use super::prepared::{FirstLook, Prepared};
 use crate::calibration::campaign::Campaign;
 use crate::diagnosis::calibration::effects::registry::pulls;
 use crate::diagnosis::calibration::model::CalibrationModel;
-use crate::diagnosis::calibration::model::law::{Hung, Law};
+use crate::diagnosis::calibration::model::law::Hung;
 use crate::error::Result;
 use crate::inference::{APART, Diagnosis, Effect, Hypothesis, Location, NAMED, Rival, Sketch, Term, sketch};
 
 /// Of more rows each calibration takes too long.
 const MOST_ROWS: usize = 2000;
-/// Masses at the tip that are tried first, kg, at the flange, and how many times its own mass a rod
-/// has too much: aluminium is a third of steel.
-const TRIED: [(Hung, &[f64]); 3] = [
-    (Hung::Tip, &[0.1, 0.3, 0.6, 1.0]),
-    (Hung::Flange, &[0.5, 1.5, 3.0, 6.0]),
-    (Hung::Rod, &[-0.6, -0.3, 0.5, 1.0, 2.0]),
-];
-/// A rod that weighs a tenth: none is lighter.
-const LIGHTEST_ROD: f64 = -0.9;
 /// Times that a robot is calibrated once more beside what is found about it.
 const FOLLOWED: usize = 3;
 /// Ln of the odds by which the next of them has to be the likelier one, or to name something else,
 /// to be followed on.
 const ONWARD: f64 = 1.0;
-/// Times that the steps about the best one are halved.
-const HALVED: usize = 4;
 
 /// True where a mass would bend rod or drives, and the poses are few enough to look for one.
 pub fn may_bend(prepared: &Prepared) -> bool {
@@ -66,19 +51,27 @@ pub struct BesideMasses<'c> {
     pub prepared: Prepared<'c>,
     /// What is found about the others that are about as probable.
     pub rivals: Vec<Rival>,
-    /// False where it is the robot as it was calibrated.
+    /// False where it is the robot as it was given.
     pub is_another: bool,
+    /// Ln of the probability of the poses with all that explains them best, about it or the robot
+    /// as it was given.
+    pub log_probability: f64,
 }
 
-/// Compares a robot with those beside a mass that the calibration has hidden, and beside each of
-/// several loads alone.
+/// Compares a robot with those beside a mass that the calibration has hidden, beside each of several
+/// loads alone, and with the robot as it was calibrated where this is another one.
 pub fn beside_hidden_masses<'c>(
     campaign: &'c Campaign,
     prepared: Prepared<'c>,
     look: &FirstLook,
 ) -> Result<BesideMasses<'c>> {
-    let first = Found::about(prepared, false).followed(look, FOLLOWED)?;
-    let masses = beside_masses(&first.prepared)?;
+    let first = Found::about(prepared, false);
+    let plain = first.log_probability();
+    let first = first.followed(look, FOLLOWED)?;
+    let mut masses = beside_masses(&first.prepared, first.sketch.hypothesis.sigma)?;
+    if !first.prepared.is_as_calibrated() {
+        masses.push(Beside::nothing(first.prepared.model.calibration.clone()));
+    }
     let alone = beside_one_load(&first.prepared, &first.sketch.hypothesis)?;
     let calibration = first.prepared.model.calibration.clone();
     let about = |beside: Beside<'c>| -> Result<(Found<'c>, FirstLook)> {
@@ -124,7 +117,7 @@ pub fn beside_hidden_masses<'c>(
         rivals.extend(others.map(|(effect, location)| Rival::without_term(effect, location, odds)));
     }
     let Found { prepared, is_another, .. } = found.swap_remove(best);
-    Ok(BesideMasses { prepared, rivals, is_another })
+    Ok(BesideMasses { prepared, rivals, is_another, log_probability: plain.max(chosen) })
 }
 
 /// A robot with what is found about it.
@@ -200,56 +193,6 @@ fn beside_one_load<'c>(prepared: &Prepared<'c>, hypothesis: &Hypothesis) -> Resu
         let is_beside = |term: &&Term| term == alone || !all.contains(term);
         let terms: Vec<Term> = hypothesis.terms.iter().filter(is_beside).cloned().collect();
         found.extend(calibrated_with(model, &Loads::of(model, &terms))?);
-    }
-    Ok(found)
-}
-
-/// Robots beside a mass that may be all that rod and masses of a hypothesis stand for, as in
-/// [`calibrated_with`].
-fn beside_masses<'c>(prepared: &Prepared<'c>) -> Result<Vec<Beside<'c>>> {
-    let model = &prepared.model;
-    let count = model.terms.candidates.len();
-    let is_possible = |own: Hung| (0..count).any(|candidate| *model.law(candidate) == Law::Hung(own));
-    let mut found = Vec::new();
-    for (own, masses) in TRIED {
-        if !is_possible(own) {
-            continue;
-        }
-        let with = |mass: f64| calibrated_with(&prepared.model, &Loads::one(own, mass));
-        let left = |mass: f64| -> Result<f64> {
-            Ok(with(mass)?.map_or(f64::INFINITY, |beside| {
-                beside.calibration.deviations.iter().map(|d| d.norm_squared()).sum()
-            }))
-        };
-        // nothing weighs less than nothing
-        let lightest = match own {
-            Hung::Tip => -prepared.context.modelled_mass.0,
-            Hung::Flange | Hung::FlangeFrom(_) | Hung::FlangeUntil(_) => 0.0,
-            Hung::Rod => LIGHTEST_ROD,
-        };
-        let lighter = if own == Hung::Tip { vec![lightest, lightest / 2.0] } else { Vec::new() };
-        let mut best = (0.0, f64::INFINITY);
-        for &mass in masses.iter().chain(&lighter) {
-            let left = left(mass)?;
-            if left < best.1 {
-                best = (mass, left);
-            }
-        }
-        // no calibration with any of them has converged
-        if best.1.is_infinite() {
-            continue;
-        }
-        let mut step = best.0 / 2.0;
-        for _ in 0..HALVED {
-            for mass in [best.0 - step, best.0 + step].map(|mass| mass.max(lightest)) {
-                let left = left(mass)?;
-                if left < best.1 {
-                    best = (mass, left);
-                }
-            }
-            step /= 2.0;
-        }
-        found.extend(with(best.0)?);
     }
     Ok(found)
 }

@@ -148,10 +148,8 @@ pub(super) fn log_probability(campaign: &Campaign, calibration: Calibration) -> 
 /// The same, or that with a mass which the calibration has hidden, where it is more probable.
 pub(super) fn beside_masses(campaign: &Campaign, calibration: Calibration) -> Option<f64> {
     let prepared = Prepared::new(campaign, calibration).ok()?;
-    let plain = sketch(&prepared.model, &prepared.evidence).log_probability;
     if !may_bend(&prepared) {
-        return Some(plain);
+        return Some(sketch(&prepared.model, &prepared.evidence).log_probability);
     }
-    let beside = beside_hidden_masses(campaign, prepared, &FirstLook::default()).ok()?.prepared;
-    Some(plain.max(sketch(&beside.model, &beside.evidence).log_probability))
+    Some(beside_hidden_masses(campaign, prepared, &FirstLook::default()).ok()?.log_probability)
 }

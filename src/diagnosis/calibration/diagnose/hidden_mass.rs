@@ -103,7 +103,7 @@ fn least(tried: &[f64], lowest: f64, left: impl Fn(f64) -> Result<f64>) -> Resul
 /// Through (a, S_a), (b, S_b) and (c, S_c) a parabola is least at
 ///
 /// ```text
-/// b − ½·[(b − a)²·(S_b − S_c) − (b − c)²·(S_b − S_a)] / [(b − a)·(S_b − S_c) − (b − c)·(S_b − S_a)]
+/// b − ½·[(b − a)·P − (b − c)·Q]/(P − Q),   P = (b − a)·(S_b − S_c),   Q = (b − c)·(S_b − S_a)
 /// ```
 fn proposed(known: &[(f64, f64)], lowest: f64) -> Option<f64> {
     let best = (0..known.len()).min_by(|&a, &b| known[a].1.total_cmp(&known[b].1))?;
@@ -111,8 +111,8 @@ fn proposed(known: &[(f64, f64)], lowest: f64) -> Option<f64> {
     let (b, of_b) = at(best)?;
     match (best.checked_sub(1).and_then(at), at(best + 1)) {
         (Some((a, of_a)), Some((c, of_c))) if of_a.is_finite() && of_c.is_finite() => {
-            let (before, behind) = ((b - a) * (of_b - of_c), (b - c) * (of_b - of_a));
-            let step = 0.5 * ((b - a) * before - (b - c) * behind) / (before - behind);
+            let (p, q) = ((b - a) * (of_b - of_c), (b - c) * (of_b - of_a));
+            let step = 0.5 * ((b - a) * p - (b - c) * q) / (p - q);
             (step.abs() > ARRIVED * (c - a)).then_some(b - step)
         }
         // a side that cannot be told is left

@@ -58,8 +58,8 @@ pub struct BesideMasses<'c> {
     pub log_probability: f64,
 }
 
-/// Compares a robot with those beside a mass that the calibration has hidden, beside each of several
-/// loads alone, and with the robot as it was calibrated where this is another one.
+/// Compares a robot with those beside a mass that the calibration has hidden, with those beside
+/// each of several loads alone, and with the robot as it was calibrated where that is another one.
 pub fn beside_hidden_masses<'c>(
     campaign: &'c Campaign,
     prepared: Prepared<'c>,
@@ -68,10 +68,7 @@ pub fn beside_hidden_masses<'c>(
     let first = Found::about(prepared, false);
     let plain = first.log_probability();
     let first = first.followed(look, FOLLOWED)?;
-    let mut masses = beside_masses(&first.prepared, first.sketch.hypothesis.sigma)?;
-    if !first.prepared.is_as_calibrated() {
-        masses.push(Beside::nothing(first.prepared.model.calibration.clone()));
-    }
+    let masses = beside_masses(&first.prepared, first.sketch.hypothesis.sigma)?;
     let alone = beside_one_load(&first.prepared, &first.sketch.hypothesis)?;
     let calibration = first.prepared.model.calibration.clone();
     let about = |beside: Beside<'c>| -> Result<(Found<'c>, FirstLook)> {
@@ -81,6 +78,11 @@ pub fn beside_hidden_masses<'c>(
         Ok((Found::about(other, true), look))
     };
     let mut found = vec![first];
+    if !found[0].prepared.is_as_calibrated() {
+        let (own, look) = about(Beside::nothing(calibration.clone()))?;
+        // the given one was found from here on
+        found.push(own.followed(&look, 0)?);
+    }
     let masses = masses.into_iter().map(about).collect::<Result<Vec<_>>>()?;
     let likeliest = masses.iter().map(|(own, _)| own.log_probability()).fold(f64::NEG_INFINITY, f64::max);
     for (own, look) in masses {

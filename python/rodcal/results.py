@@ -431,6 +431,7 @@ class Finding(Record):
     p_value: float | None
     parameters: list[Interval]
     indistinguishable_from: list[str]
+    unnamed_rival: str | None
     rivals: list[Rival]
     next_measurement: str | None
     heldout_gain: float | None

@@ -12,6 +12,7 @@ pub(in crate::inference) mod pairs;
 pub(in crate::inference) mod parts;
 pub(in crate::inference) mod pruning;
 pub(in crate::inference) mod selection;
+pub(in crate::inference) mod unnamed;
 pub(in crate::inference) mod varying;
 
 use std::sync::Arc;

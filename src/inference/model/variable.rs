@@ -85,6 +85,14 @@ impl Variable {
         }
     }
 
+    /// True for what grows, or may have changed, as time went by.
+    pub fn is_of_time(self) -> bool {
+        matches!(
+            self,
+            Variable::Order | Variable::Time | Variable::TimeInRun | Variable::Temperature | Variable::Trial
+        )
+    }
+
     /// True for a number that only names groups.
     pub fn is_group(self) -> bool {
         matches!(self, Variable::Channel | Variable::LoadAxis | Variable::Phase)

@@ -68,6 +68,9 @@ pub struct FindingPart {
     /// True where without it the numbers of the file would have to be much farther off than their
     /// uncertainties allow: then held-out data are predicted as well by these.
     pub takes_numbers_place: bool,
+    /// The likeliest curve that nobody has named and that explains it as well, of what has nothing
+    /// to do with the time, where it is seen along the time.
+    pub unnamed: Option<Rival>,
 }
 
 /// A number with its 95 % interval, SI.
@@ -247,6 +250,11 @@ impl Finding {
             }
         }
         others
+    }
+
+    /// What nobody has named that stands for it as well, where it is seen along the time.
+    pub fn unnamed(&self) -> Option<&Rival> {
+        self.parts.iter().find_map(|part| part.unnamed.as_ref())
     }
 
     /// The estimate of its place, where that is a number that was fitted: where it is, and between

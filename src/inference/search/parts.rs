@@ -4,6 +4,7 @@
 use crate::inference::columns::linearised::Linearised;
 use crate::inference::score::priors::{APART, rarity};
 use crate::inference::search::Search;
+use crate::inference::search::unnamed::unnamed;
 use crate::inference::{
     Candidate, Effect, Estimate, FindingPart, ForwardModel, Hypothesis, Location, Parameter, Rival, Term,
 };
@@ -109,6 +110,7 @@ pub fn part(
         explains: explained(search, &rest, hypothesis),
         rivals,
         takes_numbers_place: search.takes_numbers_place(hypothesis, position),
+        unnamed: unnamed(model, search, (hypothesis, &rest), position),
     }
 }
 

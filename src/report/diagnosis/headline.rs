@@ -332,11 +332,15 @@ fn only_in_part(subject: &Subject, it: &str, (before, after): (f64, f64)) -> Str
 pub fn sentence(subject: &Subject, finding: &Finding) -> String {
     let description = &finding.description;
     let others = finding.other_effects();
-    if others.is_empty() {
+    let unnamed = finding.unnamed().and_then(|rival| match &rival.location {
+        Location::Curve { follows, .. } => Some(format!("something without a name that {follows}")),
+        _ => None,
+    });
+    if others.is_empty() && unnamed.is_none() {
         return format!("{description}.");
     }
-    let mut said: Vec<String> =
-        others.iter().take(RIVALS_SAID).map(|(effect, place)| (effect.cause_at)(place)).collect();
+    let named = others.iter().take(RIVALS_SAID).map(|(effect, place)| (effect.cause_at)(place));
+    let mut said: Vec<String> = named.chain(unnamed).collect();
     if others.len() > RIVALS_SAID {
         said.push("others".into());
     }

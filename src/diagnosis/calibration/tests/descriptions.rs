@@ -32,6 +32,7 @@ fn as_if(model: &CalibrationModel, candidate: usize) -> Finding {
         explains: 0.0,
         rivals: Vec::new(),
         takes_numbers_place: false,
+        unnamed: None,
     };
     let hypothesis = Hypothesis {
         terms: vec![term],

@@ -58,6 +58,7 @@ fn finding(model: &RigModel, index: usize) -> Finding {
         explains: 0.0,
         rivals: Vec::new(),
         takes_numbers_place: false,
+        unnamed: None,
     };
     Finding::from_part(candidate.effect, location, estimates, part)
 }

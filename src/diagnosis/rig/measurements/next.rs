@@ -66,7 +66,7 @@ pub fn next_measurement(
 }
 
 /// The rivals to be separated: the likeliest of every other effect, with the other places where it
-/// may sit; without any, those of the same effect at the farthest places.
+/// may sit, and what has no name; without any, those of the same effect at the farthest places.
 fn apart(finding: &Finding) -> Vec<&Rival> {
     let mut apart: Vec<&Rival> = Vec::new();
     for rival in &finding.rivals {
@@ -75,6 +75,7 @@ fn apart(finding: &Finding) -> Vec<&Rival> {
             apart.push(rival);
         }
     }
+    apart.extend(finding.unnamed());
     let is_rival = |rival: &&Rival| apart.iter().any(|known| known.effect == rival.effect);
     let is_other = |rival: &&Rival| apart.iter().all(|known| known.term != rival.term);
     let places: Vec<&Rival> =

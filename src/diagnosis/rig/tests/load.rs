@@ -175,3 +175,45 @@ fn what_every_run_does_at_the_same_load_is_one_law_of_the_load() {
         assert_eq!(is_one_way, axes.len() == SIGNED.len(), "{seed}");
     }
 }
+
+/// Three runs along y and z in even steps of time and load, up alone or down again, of sensors that
+/// something moves by µm at so many newtons and seconds of a run.
+fn evenly(seed: u64, is_down: bool, moved: &dyn Fn(f64, f64) -> f64) -> Readings {
+    let (c, mut random) = (compliance(&rod("")), Random::seeded(seed, 0));
+    let mut text = "trial,axis,load_n,phase,time_s,dx_um,dy_um,dz_um\n".to_owned();
+    let mut time = 0.0;
+    for (trial, axis) in (1..=3).flat_map(|trial| [Axis::Y, Axis::Z].map(|axis| (trial, axis))) {
+        time += 60.0;
+        let zeros = [0, 1, 2].map(|_| random.normal());
+        for k in 1..=if is_down { 15 } else { 8 } {
+            let (load, phase) = if k > 8 { (16 - k, "unload") } else { (k, "load") };
+            let (load, since) = (1.5 * f64::from(load), 15.0 * f64::from(k));
+            let [x, y, z] = [(0, 1.0), (1, 0.6), (2, -0.7)].map(|(channel, share)| {
+                let rod = c[(channel, axis.index())] * load / UM;
+                rod + share * moved(load, since) + zeros[channel] + random.normal()
+            });
+            let now = time + since;
+            text += &format!("{trial},{axis},{load},{phase},{now},{x:.1},{y:.1},{z:.1}\n");
+        }
+        time += 15.0 * 15.0;
+    }
+    readings(&text)
+}
+
+/// A stand that gives way to the load and a drift are the same while loads rise as evenly as the
+/// time passes, and are two as soon as they are taken off.
+#[test]
+fn a_drift_is_none_for_sure_while_loads_rise_as_evenly_as_the_time() {
+    let stand = |load: f64, _| 1.6 * load;
+    let drift = |_, since: f64| 0.16 * since;
+    let named = |recorded: &Readings| {
+        let found = diagnose(recorded, Some(&rod(""))).unwrap().diagnosis;
+        let drift = found.findings.iter().find(|own| own.effect.name == "thermal_drift");
+        drift.map(|own| (own.unnamed().map(|rival| rival.location.to_string()), own.next.is_some()))
+    };
+    let in_proportion = Some("load, all sensors under all loads, in proportion".to_owned());
+    assert_eq!(named(&evenly(1, false, &stand)), Some((in_proportion.clone(), true)));
+    assert_eq!(named(&evenly(2, false, &drift)), Some((in_proportion, true)));
+    assert_eq!(named(&evenly(1, true, &stand)), None);
+    assert!(matches!(named(&evenly(2, true, &drift)), Some((None, _))));
+}

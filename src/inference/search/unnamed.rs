@@ -1,0 +1,46 @@
+//! Something that nobody has named, in the place of what changes with the time.
+//!
+//! Where loads rise as evenly as the time passes, a drift and a stand that gives way to the load
+//! are the same to the readings. One has a name and the other has none, which says nothing of which
+//! it is.
+
+use crate::inference::columns::linearised::Linearised;
+use crate::inference::score::priors::APART;
+use crate::inference::search::Search;
+use crate::inference::{Candidate, ForwardModel, Hypothesis, Kind, Location, Rival, Variable};
+
+/// So many curves, the likeliest, are fitted in the place of an effect.
+const TRIED: usize = 4;
+
+/// The likeliest curve over anything but the time that does as well, within 20:1, as the term at
+/// `position` of a hypothesis, which the data show along the time alone; `rest` is the hypothesis
+/// without it.
+pub fn unnamed(
+    model: &Linearised<'_>,
+    search: &Search,
+    (hypothesis, rest): (&Hypothesis, &Hypothesis),
+    position: usize,
+) -> Option<Rival> {
+    let term = &hypothesis.terms[position];
+    let (candidates, effect) = (model.candidates(), model.candidates()[term.candidate].effect);
+    let seen_along = (effect.seen_along)(&model.location(term));
+    let is_of_time = !seen_along.is_empty() && seen_along.into_iter().all(Variable::is_of_time);
+    if effect.kind != Kind::Physics || !is_of_time {
+        return None;
+    }
+    let additions = search.additions(rest);
+    let least = hypothesis.log_probability - rest.log_probability - 2.0 * APART.ln();
+    let is_along_another = |index: &usize| match &candidates[*index].location {
+        Location::Curve { along: Some(along), .. } => !along.is_of_time(),
+        _ => false,
+    };
+    let near = search.likeliest(&additions, true).into_iter().filter(is_along_another);
+    let near = near.take(TRIED).take_while(|&index| additions[index] > least);
+    let fitted = near.map(|index| search.with(rest, index));
+    let best = fitted.max_by(|a, b| a.log_probability.total_cmp(&b.log_probability))?;
+    let odds = (hypothesis.log_probability - best.log_probability).exp();
+    let own = best.terms.last()?.clone();
+    let Candidate { effect, location, .. } = &candidates[own.candidate];
+    let rival = Rival { effect, location: location.clone(), term: Some(own), hypothesis: best, odds };
+    (odds < APART).then_some(rival)
+}

@@ -11,6 +11,9 @@ use crate::inference::{Candidate, ForwardModel, Hypothesis, Kind, Location, Riva
 
 /// So many curves, the likeliest, are fitted in the place of an effect.
 const TRIED: usize = 4;
+/// A curve of at most so many numbers, one for each coordinate, draws one thing: it is told from an
+/// effect by its shape, not by how many of them that moves.
+const OF_ONE_SHAPE: usize = 3;
 
 /// The likeliest curve over anything but the time that does as well, within 20:1, as the term at
 /// `position` of a hypothesis, which the data show along the time alone; `rest` is the hypothesis
@@ -29,16 +32,25 @@ pub fn unnamed(
         return None;
     }
     let additions = search.additions(rest);
+    // what a number more costs by itself, ½·ln n
+    let of_number = 0.5 * (search.degrees_of_freedom().max(1) as f64).ln();
+    let price = |index: usize| match candidates[index].parameters.len() {
+        numbers @ ..=OF_ONE_SHAPE => numbers.saturating_sub(term.values.len()) as f64 * of_number,
+        _ => 0.0,
+    };
     let least = hypothesis.log_probability - rest.log_probability - 2.0 * APART.ln();
     let is_along_another = |index: &usize| match &candidates[*index].location {
         Location::Curve { along: Some(along), .. } => !along.is_of_time(),
         _ => false,
     };
     let near = search.likeliest(&additions, true).into_iter().filter(is_along_another);
-    let near = near.take(TRIED).take_while(|&index| additions[index] > least);
-    let fitted = near.map(|index| search.with(rest, index));
-    let best = fitted.max_by(|a, b| a.log_probability.total_cmp(&b.log_probability))?;
-    let odds = (hypothesis.log_probability - best.log_probability).exp();
+    let near = near.take(TRIED).filter(|&index| additions[index] + price(index) > least);
+    let fitted = near.map(|index| {
+        let with = search.with(rest, index);
+        (with.log_probability + price(index), with)
+    });
+    let (as_well, best) = fitted.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let odds = (hypothesis.log_probability - as_well).exp();
     let own = best.terms.last()?.clone();
     let Candidate { effect, location, .. } = &candidates[own.candidate];
     let rival = Rival { effect, location: location.clone(), term: Some(own), hypothesis: best, odds };

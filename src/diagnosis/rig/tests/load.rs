@@ -176,9 +176,9 @@ fn what_every_run_does_at_the_same_load_is_one_law_of_the_load() {
     }
 }
 
-/// Three runs along y and z in even steps of time and load, up alone or down again, of sensors that
-/// something moves by µm at so many newtons and seconds of a run.
-fn evenly(seed: u64, is_down: bool, moved: &dyn Fn(f64, f64) -> f64) -> Readings {
+/// Three runs along y and z in even steps of time and load, up alone or down again, of sensors of
+/// which each is moved by a share of the µm at so many newtons and seconds of a run.
+fn evenly(shares: [f64; 3], seed: u64, is_down: bool, moved: &dyn Fn(f64, f64) -> f64) -> Readings {
     let (c, mut random) = (compliance(&rod("")), Random::seeded(seed, 0));
     let mut text = "trial,axis,load_n,phase,time_s,dx_um,dy_um,dz_um\n".to_owned();
     let mut time = 0.0;
@@ -188,9 +188,9 @@ fn evenly(seed: u64, is_down: bool, moved: &dyn Fn(f64, f64) -> f64) -> Readings
         for k in 1..=if is_down { 15 } else { 8 } {
             let (load, phase) = if k > 8 { (16 - k, "unload") } else { (k, "load") };
             let (load, since) = (1.5 * f64::from(load), 15.0 * f64::from(k));
-            let [x, y, z] = [(0, 1.0), (1, 0.6), (2, -0.7)].map(|(channel, share)| {
+            let [x, y, z] = [0, 1, 2].map(|channel| {
                 let rod = c[(channel, axis.index())] * load / UM;
-                rod + share * moved(load, since) + zeros[channel] + random.normal()
+                rod + shares[channel] * moved(load, since) + zeros[channel] + random.normal()
             });
             let now = time + since;
             text += &format!("{trial},{axis},{load},{phase},{now},{x:.1},{y:.1},{z:.1}\n");
@@ -211,9 +211,12 @@ fn a_drift_is_none_for_sure_while_loads_rise_as_evenly_as_the_time() {
         let drift = found.findings.iter().find(|own| own.effect.name == "thermal_drift");
         drift.map(|own| (own.unnamed().map(|rival| rival.location.to_string()), own.next.is_some()))
     };
+    let all = [1.0, 0.6, -0.7];
     let in_proportion = Some("load, all sensors under all loads, in proportion".to_owned());
-    assert_eq!(named(&evenly(1, false, &stand)), Some((in_proportion.clone(), true)));
-    assert_eq!(named(&evenly(2, false, &drift)), Some((in_proportion, true)));
-    assert_eq!(named(&evenly(1, true, &stand)), None);
-    assert!(matches!(named(&evenly(2, true, &drift)), Some((None, _))));
+    assert_eq!(named(&evenly(all, 1, false, &stand)), Some((in_proportion.clone(), true)));
+    assert_eq!(named(&evenly(all, 2, false, &drift)), Some((in_proportion.clone(), true)));
+    // however clear it is that one sensor alone is moved
+    assert_eq!(named(&evenly([0.0, 1.0, 0.0], 3, false, &stand)), Some((in_proportion, true)));
+    assert_eq!(named(&evenly(all, 1, true, &stand)), None);
+    assert!(matches!(named(&evenly(all, 2, true, &drift)), Some((None, _))));
 }

@@ -1,6 +1,6 @@
 //! What a reader in a hurry takes away from a diagnosis.
 
-use super::headline::{RIVALS_SAID, cause_at, is_scatter_estimated, um};
+use super::headline::{RIVALS_SAID, cause_at, is_scatter_estimated, um, unnamed};
 use super::subject::Subject;
 use crate::inference::{Finding, Kind};
 use crate::report::{Card, Tone};
@@ -62,8 +62,10 @@ fn errors(subject: &Subject) -> Card {
 /// How sure the strongest finding is.
 fn sure(subject: &Subject, finding: &Finding) -> Card {
     let others = finding.other_effects();
-    let names: Vec<String> =
-        others.iter().take(RIVALS_SAID).map(|(effect, place)| (effect.cause_at)(place)).collect();
+    let unnamed = unnamed(finding);
+    let count = others.len() + usize::from(unnamed.is_some());
+    let named = others.iter().take(RIVALS_SAID).map(|(effect, place)| (effect.cause_at)(place));
+    let names: Vec<String> = named.chain(unnamed).collect();
     let folds = finding.found_in_folds.map(|(some, all)| format!("in {some} of {all} searches"));
     if names.is_empty() {
         let found = match folds {
@@ -72,7 +74,7 @@ fn sure(subject: &Subject, finding: &Finding) -> Card {
         };
         return Card::new("How sure", "no rival", found).toned(Tone::Good);
     }
-    let value = match others.len() {
+    let value = match count {
         1 => "1 rival".to_owned(),
         count => format!("{count} rivals"),
     };

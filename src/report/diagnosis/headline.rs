@@ -332,10 +332,7 @@ fn only_in_part(subject: &Subject, it: &str, (before, after): (f64, f64)) -> Str
 pub fn sentence(subject: &Subject, finding: &Finding) -> String {
     let description = &finding.description;
     let others = finding.other_effects();
-    let unnamed = finding.unnamed().and_then(|rival| match &rival.location {
-        Location::Curve { follows, .. } => Some(format!("something without a name that {follows}")),
-        _ => None,
-    });
+    let unnamed = unnamed(finding);
     if others.is_empty() && unnamed.is_none() {
         return format!("{description}.");
     }
@@ -351,6 +348,14 @@ pub fn sentence(subject: &Subject, finding: &Finding) -> String {
             format!("{description}. It may also be {said}; these {noun} cannot distinguish them.")
         }
         _ => format!("{description}, or {said}; these {noun} cannot distinguish them."),
+    }
+}
+
+/// What has no name and may as well be there.
+pub fn unnamed(finding: &Finding) -> Option<String> {
+    match &finding.unnamed()?.location {
+        Location::Curve { follows, .. } => Some(format!("something without a name that {follows}")),
+        _ => None,
     }
 }
 

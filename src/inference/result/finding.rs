@@ -24,6 +24,9 @@ pub struct Finding {
     pub description: Description,
     /// What explains it as well, likeliest first, its own places included.
     pub rivals: Vec<Rival>,
+    /// The likeliest curve that nobody has named and that explains it as well, of what has nothing
+    /// to do with the time, where it is seen along the time.
+    pub unnamed: Option<Rival>,
     /// Probability that noise alone fits as much better.
     pub p_value: f64,
     /// Root mean square of what it explains, in the unit of the evidence.
@@ -68,8 +71,7 @@ pub struct FindingPart {
     /// True where without it the numbers of the file would have to be much farther off than their
     /// uncertainties allow: then held-out data are predicted as well by these.
     pub takes_numbers_place: bool,
-    /// The likeliest curve that nobody has named and that explains it as well, of what has nothing
-    /// to do with the time, where it is seen along the time.
+    /// As [`Finding::unnamed`].
     pub unnamed: Option<Rival>,
 }
 
@@ -157,6 +159,7 @@ impl Finding {
             place: None,
             description: Description::default(),
             rivals: Vec::new(),
+            unnamed: None,
             p_value: part.p_value,
             explains: 0.0,
             found_in_folds: None,
@@ -181,6 +184,7 @@ impl Finding {
             place: None,
             description,
             rivals: Vec::new(),
+            unnamed: None,
             p_value: 0.0,
             explains: 0.0,
             found_in_folds: None,
@@ -250,11 +254,6 @@ impl Finding {
             }
         }
         others
-    }
-
-    /// What nobody has named that stands for it as well, where it is seen along the time.
-    pub fn unnamed(&self) -> Option<&Rival> {
-        self.parts.iter().find_map(|part| part.unnamed.as_ref())
     }
 
     /// The estimate of its place, where that is a number that was fitted: where it is, and between

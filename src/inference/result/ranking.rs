@@ -50,12 +50,8 @@ pub fn ranking(candidates: &[Candidate], diagnosis: &Diagnosis) -> Vec<Ranked> {
     for known in &mut ranked {
         let is_of_effect = |candidate: usize| candidates[candidate].effect == known.effect;
         let adopted = parts.iter().find(|part| is_of_effect(part.term.candidate));
-        let is_rival = || {
-            parts
-                .iter()
-                .flat_map(|part| part.rivals.iter().chain(&part.unnamed))
-                .any(|rival| rival.effect == known.effect)
-        };
+        let mut rivals = parts.iter().flat_map(|part| part.rivals.iter().chain(&part.unnamed));
+        let mut is_rival = || rivals.any(|rival| rival.effect == known.effect);
         if let Some(part) = adopted {
             known.rank = Rank::Adopted;
             known.location.clone_from(&part.location);

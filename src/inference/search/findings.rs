@@ -57,6 +57,7 @@ pub fn findings(
         finding.place = model.place_among_estimates(&finding.parts);
         finding.rivals = finding.parts.iter().flat_map(|part| part.rivals.clone()).collect();
         finding.rivals.sort_by(|a, b| a.odds.total_cmp(&b.odds));
+        finding.unnamed = finding.parts.iter().find_map(|part| part.unnamed.clone());
         finding.found_in_folds = held_out.map(|held_out| held_out.found(model.candidates(), *theme));
         finding.held_out_loss = held_out.map(|held_out| held_out.loss(*theme));
         finding.description = model.describe(finding);

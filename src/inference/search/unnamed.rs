@@ -11,8 +11,8 @@ use crate::inference::{Candidate, ForwardModel, Hypothesis, Kind, Location, Riva
 
 /// So many curves, the likeliest, are fitted in the place of an effect.
 const TRIED: usize = 4;
-/// A curve of at most so many numbers, one for each coordinate, draws one thing: it is told from an
-/// effect by its shape, not by how many of them that moves.
+/// A curve of at most so many numbers, one for each coordinate, has one shape: that is what
+/// distinguishes it from an effect, not in how many coordinates that is seen.
 const OF_ONE_SHAPE: usize = 3;
 
 /// The likeliest curve over anything but the time that does as well, within 20:1, as the term at
@@ -32,9 +32,9 @@ pub fn unnamed(
         return None;
     }
     let additions = search.additions(rest);
-    // what a number more costs by itself, ½·ln n
+    // what a number more costs by itself, ½·ln n (G. Schwarz, Ann. Statist. 6, 1978)
     let of_number = 0.5 * (search.degrees_of_freedom().max(1) as f64).ln();
-    let price = |index: usize| match candidates[index].parameters.len() {
+    let cost = |index: usize| match candidates[index].parameters.len() {
         numbers @ ..=OF_ONE_SHAPE => numbers.saturating_sub(term.values.len()) as f64 * of_number,
         _ => 0.0,
     };
@@ -44,10 +44,10 @@ pub fn unnamed(
         _ => false,
     };
     let near = search.likeliest(&additions, true).into_iter().filter(is_along_another);
-    let near = near.take(TRIED).filter(|&index| additions[index] + price(index) > least);
+    let near = near.take(TRIED).filter(|&index| additions[index] + cost(index) > least);
     let fitted = near.map(|index| {
         let with = search.with(rest, index);
-        (with.log_probability + price(index), with)
+        (with.log_probability + cost(index), with)
     });
     let (as_well, best) = fitted.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let odds = (hypothesis.log_probability - as_well).exp();

@@ -1,6 +1,6 @@
 //! What a reader in a hurry takes away from a diagnosis.
 
-use super::headline::{RIVALS_SAID, cause_at, is_scatter_estimated, um, unnamed};
+use super::headline::{RIVALS_SAID, cause_at, is_scatter_estimated, other_causes, um};
 use super::subject::Subject;
 use crate::inference::{Finding, Kind};
 use crate::report::{Card, Tone};
@@ -61,24 +61,21 @@ fn errors(subject: &Subject) -> Card {
 
 /// How sure the strongest finding is.
 fn sure(subject: &Subject, finding: &Finding) -> Card {
-    let others = finding.other_effects();
-    let unnamed = unnamed(finding);
-    let count = others.len() + usize::from(unnamed.is_some());
-    let named = others.iter().take(RIVALS_SAID).map(|(effect, place)| (effect.cause_at)(place));
-    let names: Vec<String> = named.chain(unnamed).collect();
+    let others = other_causes(finding);
     let folds = finding.found_in_folds.map(|(some, all)| format!("in {some} of {all} searches"));
-    if names.is_empty() {
+    if others.is_empty() {
         let found = match folds {
             Some(folds) => format!("found {folds} that leave a part of the {} out", subject.noun),
             None => "nothing else explains as much".to_owned(),
         };
         return Card::new("How sure", "no rival", found).toned(Tone::Good);
     }
-    let value = match count {
+    let value = match others.len() {
         1 => "1 rival".to_owned(),
         count => format!("{count} rivals"),
     };
-    Card::new("How sure", value, format!("it may as well be {}", names.join(" or "))).toned(Tone::Attention)
+    let said = others[..others.len().min(RIVALS_SAID)].join(" or ");
+    Card::new("How sure", value, format!("it may as well be {said}")).toned(Tone::Attention)
 }
 
 fn left(subject: &Subject) -> Card {

@@ -331,14 +331,12 @@ fn only_in_part(subject: &Subject, it: &str, (before, after): (f64, f64)) -> Str
 /// A finding with what these data cannot distinguish from it.
 pub fn sentence(subject: &Subject, finding: &Finding) -> String {
     let description = &finding.description;
-    let others = finding.other_effects();
-    let unnamed = unnamed(finding);
-    if others.is_empty() && unnamed.is_none() {
+    let mut said = other_causes(finding);
+    if said.is_empty() {
         return format!("{description}.");
     }
-    let named = others.iter().take(RIVALS_SAID).map(|(effect, place)| (effect.cause_at)(place));
-    let mut said: Vec<String> = named.chain(unnamed).collect();
-    if others.len() > RIVALS_SAID {
+    if said.len() > RIVALS_SAID {
+        said.truncate(RIVALS_SAID);
         said.push("others".into());
     }
     let (said, noun) = (said.join(", or "), subject.noun);
@@ -351,12 +349,15 @@ pub fn sentence(subject: &Subject, finding: &Finding) -> String {
     }
 }
 
-/// What has no name and may as well be there.
-pub fn unnamed(finding: &Finding) -> Option<String> {
-    match &finding.unnamed()?.location {
-        Location::Curve { follows, .. } => Some(format!("something without a name that {follows}")),
+/// All that these data cannot distinguish from a finding: what has no name first, then other
+/// effects, the likeliest first.
+pub fn other_causes(finding: &Finding) -> Vec<String> {
+    let unnamed = finding.unnamed.as_ref().and_then(|rival| match &rival.location {
+        Location::Curve { follows, .. } => Some(format!("another cause that {follows}")),
         _ => None,
-    }
+    });
+    let effects = finding.other_effects();
+    unnamed.into_iter().chain(effects.iter().map(|(effect, place)| (effect.cause_at)(place))).collect()
 }
 
 /// Which other clamp, socket, joint or part it may be: the first sentence names none as if it were
@@ -429,6 +430,18 @@ mod tests {
         assert_eq!(found(&[]), "");
         assert_eq!(found(&[Location::Station(0.2)]), "");
         assert_eq!(found(&[at("clamp 3"), at("clamp 1")]), " It may as well be clamp 3, or clamp 1.");
+    }
+
+    /// What has no name is no less of a rival.
+    #[test]
+    fn a_cause_without_a_name_is_said_like_any_other() {
+        let follows = "follows the load".to_owned();
+        let curve = Location::Curve { label: "load".into(), follows, along: None };
+        let at = Location::Named("clamp 2".into());
+        let mut finding = Finding::without_terms(&UNKNOWN, at, Vec::new(), Description::default());
+        assert!(other_causes(&finding).is_empty());
+        finding.unnamed = Some(Rival::without_term(&UNKNOWN, curve, 1.0));
+        assert_eq!(other_causes(&finding), ["another cause that follows the load"]);
     }
 
     #[test]

@@ -114,7 +114,7 @@ fn of_finding(subject: &Subject, index: usize, finding: &Finding) -> Value {
         "p_value": finding.p_value,
         "parameters": finding.estimates.iter().map(estimate).collect::<Vec<_>>(),
         "indistinguishable_from": others,
-        "unnamed_rival": finding.unnamed().map(|rival| rival.location.to_string()),
+        "unnamed_rival": finding.unnamed.as_ref().map(|rival| rival.location.to_string()),
         "places": places,
         "rivals": finding.rivals.iter().map(rival).collect::<Vec<_>>(),
         "next_measurement": next.map(|next| &next.description),

@@ -39,8 +39,9 @@ fn findings(subject: &Subject) -> Section {
     }
     let points = findings.iter().enumerate().map(|(k, finding)| {
         let next = finding.next.as_ref();
-        let is_alone = finding.rivals.is_empty() && finding.unnamed().is_none();
-        let purpose = if is_alone { "check it" } else { "distinguish them" };
+        let has_rivals =
+            !finding.rivals.is_empty() || next.is_some_and(|next| !next.separates_from.is_empty());
+        let purpose = if has_rivals { "distinguish them" } else { "check it" };
         let next = next.map_or_else(String::new, |next| format!(" To {purpose}: {}", next.description));
         // what nothing can undo is said in full above, and no number says more
         let said = match is_undone(finding) {

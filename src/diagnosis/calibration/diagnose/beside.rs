@@ -74,7 +74,7 @@ pub fn is_load(model: &CalibrationModel, own: Hung) -> bool {
 
 impl<'c> Beside<'c> {
     /// A robot as it was calibrated.
-    pub fn nothing(calibration: Calibration<'c>) -> Beside<'c> {
+    pub fn as_calibrated(calibration: Calibration<'c>) -> Beside<'c> {
         Beside { about: calibration.clone(), calibration, carried: Vec::new() }
     }
 }

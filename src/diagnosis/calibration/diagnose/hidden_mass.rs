@@ -57,13 +57,17 @@ pub fn beside_masses<'c>(prepared: &Prepared<'c>, sigma: f64) -> Result<Vec<Besi
         let (mass, least) = least(&[&lighter, tried].concat(), lightest, left_with)?;
         hidden.push((own, mass, (without - least) / (2.0 * sigma.powi(2))));
     }
-    let most = hidden.iter().map(|(_, _, gain)| *gain).fold(0.0, f64::max);
-    let is_hidden = |gain: f64| gain > APART.ln() && gain > COMPARABLE * most;
+    let least = least_gain(hidden.iter().map(|(_, _, gain)| *gain));
     let mut found = Vec::new();
-    for (own, mass, _) in hidden.into_iter().filter(|(_, _, gain)| is_hidden(*gain)) {
+    for (own, mass, _) in hidden.into_iter().filter(|(_, _, gain)| *gain > least) {
         found.extend(calibrated_with(model, &Loads::one(own, mass))?);
     }
     Ok(found)
+}
+
+/// What a mass has to explain to be hidden, beside all that may be, (S₀ − S)/2σ².
+fn least_gain(all: impl Iterator<Item = f64>) -> f64 {
+    all.fold(APART.ln(), |least, gain| least.max(COMPARABLE * gain))
 }
 
 /// True where a mass in some place may be hidden.
@@ -83,7 +87,7 @@ fn left(model: &CalibrationModel, calibration: &Calibration) -> f64 {
 }
 
 /// Where `left` is least, and how much it is there: of the numbers `tried`, and of those that
-/// parabolas propose, none below `lowest`. Infinite is what cannot be told.
+/// parabolas propose, none below `lowest`. Infinite where a calibration has not converged.
 fn least(tried: &[f64], lowest: f64, left: impl Fn(f64) -> Result<f64>) -> Result<(f64, f64)> {
     let mut known = Vec::new();
     for &own in tried {
@@ -115,7 +119,7 @@ fn proposed(known: &[(f64, f64)], lowest: f64) -> Option<f64> {
             let step = 0.5 * ((b - a) * p - (b - c) * q) / (p - q);
             (step.abs() > ARRIVED * (c - a)).then_some(b - step)
         }
-        // a side that cannot be told is left
+        // away from a side where none has converged
         (Some((a, of_a)), Some((c, _))) => Some(0.5 * (b + if of_a.is_finite() { a } else { c })),
         (None, Some((c, _))) if b > lowest => Some((2.0 * b - c).max(lowest)),
         (None, Some((c, _))) => Some(0.5 * (b + c)),
@@ -142,6 +146,18 @@ mod tests {
         (at, looks.get())
     }
 
+    /// As much as chance does, or half of what the best one does.
+    #[test]
+    fn a_mass_that_another_one_imitates_is_not_hidden() {
+        let hidden = |gains: &[f64]| {
+            let least = least_gain(gains.iter().copied());
+            gains.iter().map(|gain| *gain > least).collect::<Vec<_>>()
+        };
+        assert_eq!(hidden(&[-5.0, 2.9, 3.1]), [false, false, true]);
+        assert_eq!(hidden(&[944.0, 300.0, 870.0]), [true, false, true]);
+        assert_eq!(hidden(&[f64::NEG_INFINITY, f64::NAN]), [false, false]);
+    }
+
     #[test]
     fn a_parabola_is_arrived_at_in_one_step() {
         let (at, looks) = found(&[0.1, 0.3, 0.6, 1.0], -0.2, |x| 3.0 + (x - 0.45).powi(2));
@@ -160,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_told_is_no_place_and_of_nothing_nothing_is_least() {
+    fn where_none_converges_is_no_place_and_of_nothing_nothing_is_least() {
         let left = |x: f64| if x > 0.7 { f64::INFINITY } else { (x - 0.6).powi(2) };
         assert!((found(&[0.1, 0.3, 0.5, 1.0], 0.0, left).0 - 0.6).abs() < 0.11);
         assert_eq!(least(&[0.5, 1.0], 0.0, |_| Ok(f64::INFINITY)).unwrap().1, f64::INFINITY);

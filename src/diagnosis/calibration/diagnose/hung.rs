@@ -79,7 +79,7 @@ pub fn beside_hidden_masses<'c>(
     };
     let mut found = vec![first];
     if !found[0].prepared.is_as_calibrated() {
-        let (own, look) = about(Beside::nothing(calibration.clone()))?;
+        let (own, look) = about(Beside::as_calibrated(calibration.clone()))?;
         // the given one was found from here on
         found.push(own.followed(&look, 0)?);
     }

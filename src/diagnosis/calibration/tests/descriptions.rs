@@ -51,6 +51,7 @@ fn as_if(model: &CalibrationModel, candidate: usize) -> Finding {
         place: model.place_among_estimates(&parts),
         description: Description { observed: String::new(), cause: String::new() },
         rivals: Vec::new(),
+        unnamed: None,
         p_value: 0.0,
         explains: 0.0,
         found_in_folds: None,

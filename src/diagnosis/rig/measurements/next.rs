@@ -75,7 +75,7 @@ fn apart(finding: &Finding) -> Vec<&Rival> {
             apart.push(rival);
         }
     }
-    apart.extend(finding.unnamed());
+    apart.extend(&finding.unnamed);
     let is_rival = |rival: &&Rival| apart.iter().any(|known| known.effect == rival.effect);
     let is_other = |rival: &&Rival| apart.iter().all(|known| known.term != rival.term);
     let places: Vec<&Rival> =

@@ -209,7 +209,7 @@ fn a_drift_is_none_for_sure_while_loads_rise_as_evenly_as_the_time() {
     let named = |recorded: &Readings| {
         let found = diagnose(recorded, Some(&rod(""))).unwrap().diagnosis;
         let drift = found.findings.iter().find(|own| own.effect.name == "thermal_drift");
-        drift.map(|own| (own.unnamed().map(|rival| rival.location.to_string()), own.next.is_some()))
+        drift.map(|own| (own.unnamed.as_ref().map(|rival| rival.location.to_string()), own.next.is_some()))
     };
     let all = [1.0, 0.6, -0.7];
     let in_proportion = Some("load, all sensors under all loads, in proportion".to_owned());

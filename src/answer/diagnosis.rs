@@ -5,7 +5,7 @@ use std::path::Path;
 use super::{Answer, provenance};
 use crate::calibration::campaign::FileNames;
 use crate::calibration::{Campaign, Mode, Options};
-use crate::diagnosis::calibration::{Neighbours, check_memory, mend};
+use crate::diagnosis::calibration::{Neighbours, check_memory, look_at_validation, mend};
 use crate::diagnosis::rig::{OwnEffect, diagnose_with};
 use crate::error::Result;
 use crate::report::diagnosis as reports;
@@ -129,7 +129,8 @@ pub fn diagnose_calibration(
     check_memory(campaign)?;
     let options = Options::default();
     let mended = mend(campaign, mode, others, &options)?;
-    let found = mended.diagnose()?;
+    let mut found = mended.diagnose()?;
+    look_at_validation(&mut found)?;
     let mut report = reports::calibration::report(&found);
     report.provenance = provenance(campaign);
     let mut json = reports::calibration::json(&found);

@@ -132,7 +132,7 @@ impl Recording {
     }
 
     /// Each point less the mean of the points of its group.
-    pub(super) fn minus_group_means(&self, points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    pub(crate) fn minus_group_means(&self, points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
         let mut sum = vec![(Vector3::zeros(), 0.0); self.groups.len()];
         for (point, row) in points.iter().zip(&self.rows) {
             sum[row.group].0 += point;

@@ -36,6 +36,7 @@ mod nonparametric;
 #[cfg(test)]
 mod tests;
 mod transfer;
+mod validated;
 mod write_back;
 
 pub use self::diagnose::memory::{MEMORY_LIMIT, check_memory, memory_needed};
@@ -43,6 +44,8 @@ pub use self::laws::textbook::remark;
 pub use self::model::CalibrationModel;
 pub use self::model::gear::{Curve, Gear};
 pub use self::model::law::{Course, Frame, Law, RodLoad, TakenUp};
+pub use self::model::validated::{OwnEvents, Validated};
+pub use self::validated::look_at_validation;
 pub use self::write_back::apply::{Applied, apply};
 pub use self::write_back::destination::law_destination;
 pub use diagnose::{CalibrationDiagnosis, Happened, diagnose_as_recorded, diagnose_calibrated};

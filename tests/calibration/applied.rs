@@ -6,7 +6,9 @@ use std::path::Path;
 
 use rodcal::calibration::campaign::FileNames;
 use rodcal::calibration::{Calibration, Campaign, Mode, Options, Summary, calibrate};
-use rodcal::diagnosis::calibration::{Applied, CalibrationDiagnosis, apply, diagnose_calibrated};
+use rodcal::diagnosis::calibration::{
+    Applied, CalibrationDiagnosis, apply, diagnose_calibrated, look_at_validation,
+};
 use rodcal::prelude::*;
 use rodcal::robot::{Effect, TorquePower};
 
@@ -84,15 +86,21 @@ fn what_gives_way_under_the_arm_s_weight_is_known_at_unseen_poses() {
     ] {
         let campaign = tracked(vec![effect]);
         let before = calibrate(&campaign, Mode::None, &Options::default()).unwrap();
-        let found = diagnose_calibrated(&campaign, before.clone()).unwrap();
+        let mut found = diagnose_calibrated(&campaign, before.clone()).unwrap();
+        look_at_validation(&mut found).unwrap();
         let effects: Vec<&str> = found.diagnosis.findings.iter().map(|finding| finding.effect.name).collect();
         assert_eq!(effects, [name]);
         let applied = apply(&found, &names("builtin:tx90", Some("validation.csv")), &[]).unwrap().unwrap();
         assert_eq!((applied.entered.len(), applied.removed.len(), applied.left_out.len()), (1, 0, 0));
         let again = written(&applied, "");
         let after = calibrate(&again, Mode::None, &Options::default()).unwrap();
-        let (without, with) = applied.unseen.unwrap();
-        assert!(with < without && !applied.is_worse(), "{name}: {without} {with}");
+        let validated_poses = found.model.validated.as_ref().unwrap();
+        let (without, with) = validated_poses.means();
+        let with = with.expect("it was written");
+        assert!(with < without && !validated_poses.is_worse(), "{name}: {without} {with}");
+        // what is said of the robot is true of the one that is written
+        let own = after.validation.as_ref().unwrap().summary.mean;
+        assert!((own - with).abs() < 1e-3 * with, "{name}: {own} {with}");
         let noise = 3.0f64.sqrt() * NOISE;
         let (was, is) = (validated(&before), validated(&after));
         assert!(is < 1.25 * noise && is < was && was > 1.3 * noise, "{name}: {was} {is}");

@@ -272,7 +272,6 @@ impl Mended {
             removed: Vec::new(),
             left_out: Vec::new(),
             mean: Summary::of(&found.model.calibration.residuals()).mean,
-            unseen: None,
         };
         let mut above =
             vec![format!("CORRECTED, not as recorded: {} without mistakes. Done:", self.campaign.file)];

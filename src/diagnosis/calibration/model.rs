@@ -11,6 +11,7 @@ pub mod law;
 pub mod linear_terms;
 pub mod patterns;
 pub mod torque_uncertainty;
+pub mod validated;
 pub mod vector;
 
 pub use calibration_model::CalibrationModel;

@@ -23,6 +23,7 @@ mod transfer;
 mod turned;
 mod unfollowed;
 mod unnamed;
+mod validated;
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};

@@ -3,3 +3,4 @@
 pub mod apply;
 pub mod correction_table;
 pub mod destination;
+pub mod extended;

@@ -35,10 +35,8 @@ pub fn headline(subject: &Subject) -> String {
         true => format!("{} {}", Limitation::NotConverged, answer(subject)),
         false => answer(subject),
     };
-    let words = match &subject.uneven {
-        Some(uneven) => format!("{words} {}", uneven.words),
-        None => words,
-    };
+    let own = [subject.uneven.as_ref().map(|own| &own.words), subject.elsewhere.as_ref()];
+    let words = own.into_iter().flatten().fold(words, |words, more| format!("{words} {more}"));
     match &subject.doubtful {
         Some(doubtful) => format!("{doubtful} {words}"),
         None => words,
@@ -397,7 +395,7 @@ pub fn cause_at(finding: &Finding) -> String {
 }
 
 /// How an error falls: `from 109 to 51 µm`, `from 331 mm to 23 µm`.
-fn from_to(before: f64, after: f64) -> String {
+pub fn from_to(before: f64, after: f64) -> String {
     let (first, last) = (size(before), size(after));
     match (first.split_once(' '), last.split_once(' ')) {
         (Some((number, unit)), Some((_, same))) if unit == same => format!("from {number} to {last}"),

@@ -70,6 +70,7 @@ fn subject<'a>(found: &'a RigDiagnosis, correction: Option<&Correction>) -> Subj
         doubtful: None,
         nominal: nominal(found),
         uneven: scatter::uneven(found),
+        elsewhere: None,
         suspect: Box::new(|datum| {
             let datum = &model.data()[datum];
             json!({ "row": datum.row, "channel": format!("d{}", datum.channel) })

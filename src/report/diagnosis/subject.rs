@@ -42,6 +42,8 @@ pub struct Subject<'a> {
     pub nominal: Option<String>,
     /// Sensors that scatter otherwise than the others do.
     pub uneven: Option<Uneven>,
+    /// What the findings are worth for data that no search has seen, in a sentence.
+    pub elsewhere: Option<String>,
     /// A suspect datum as JSON: its row or pose, its channel.
     pub suspect: Box<dyn Fn(usize) -> Value + 'a>,
     /// What no effect explains.

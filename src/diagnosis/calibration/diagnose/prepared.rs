@@ -107,6 +107,7 @@ impl<'c> Prepared<'c> {
             calibration,
             tip_jacobians: jacobians.collect(),
             recorded: None,
+            validated: None,
             scale: context.scale.clone(),
             torque_uncertainty: TorqueUncertainty::new(campaign, &context),
             terms,

@@ -6,6 +6,7 @@ use super::gear::Gear;
 use super::law::Law;
 use super::linear_terms::LinearTerms;
 use super::torque_uncertainty::TorqueUncertainty;
+use super::validated::Validated;
 use crate::calibration::campaign::Campaign;
 use crate::calibration::{Calibration, Summary};
 use crate::inference::{Finding, FindingPart, Term};
@@ -21,6 +22,9 @@ pub struct CalibrationModel<'c> {
     pub tip_jacobians: Vec<Vec<Vector3<f64>>>,
     /// Errors of a calibration on what was recorded, where mistakes were undone.
     pub(crate) recorded: Option<Summary>,
+    /// Errors of the validation, of which no search has seen anything: see
+    /// [`look_at_validation`](crate::diagnosis::calibration::look_at_validation).
+    pub validated: Option<Validated>,
     /// What each row counts.
     pub(in crate::diagnosis::calibration) scale: Vec<f64>,
     /// How well torques are known.

@@ -8,17 +8,13 @@
 
 use super::super::diagnose::CalibrationDiagnosis;
 use super::correction_table;
-use super::destination::{write, write_law};
+use super::extended::{Extended, proposed};
 use crate::calibration::campaign::{Campaign, FileNames, Recording};
-use crate::calibration::{Calibration, Options, Summary, calibrate, write_back_with, write_beside};
+use crate::calibration::{Options, Summary, calibrate, write_back_with, write_beside};
 use crate::error::Result;
-use crate::inference::law::{Law, Proposed};
-use crate::inference::{Finding, WrittenTo};
+use crate::inference::law::Proposed;
 use crate::robot::{Effect, Robot, corrections_csv, is_urdf};
 use crate::units::UM;
-
-/// By this factor an error has grown, and is not the same within what some poses show of it.
-const WORSE: f64 = 1.1;
 
 /// The robot with what was found.
 #[derive(Debug, Clone)]
@@ -36,28 +32,6 @@ pub struct Applied {
     pub left_out: Vec<String>,
     /// Mean distance of the tip after the calibration with all that, m.
     pub mean: f64,
-    /// The same at the validation poses, without the findings and with them; `None` without such
-    /// poses.
-    pub unseen: Option<(f64, f64)>,
-}
-
-impl Applied {
-    /// True where poses that were not seen say that the robot is worse with what was found.
-    pub fn is_worse(&self) -> bool {
-        self.unseen.is_some_and(|(without, with)| with > WORSE * without)
-    }
-}
-
-/// A finding as it is beside the law.
-fn beside(law: Option<&Law>, finding: &Finding) -> Finding {
-    let mut finding = finding.clone();
-    let terms = law.map_or(&[][..], |law| &law.beside.terms);
-    for part in &mut finding.parts {
-        if let Some(term) = terms.iter().find(|term| term.candidate == part.term.candidate) {
-            part.term = term.clone();
-        }
-    }
-    finding
 }
 
 /// Robot and campaign with what `found` says; `None` where nothing of it could be written. `names`
@@ -86,33 +60,13 @@ fn beside(law: Option<&Law>, finding: &Finding) -> Finding {
 /// As [`calibrate`] and [`crate::calibration::write_back`].
 pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) -> Result<Option<Applied>> {
     let model = &found.model;
-    let mut extended = model.campaign.clone();
-    let (mut entered, mut removed, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
-    let mut put = |destination: WrittenTo, description: String| match destination {
-        WrittenTo::Model => entered.push(description),
-        WrittenTo::Recording => removed.push(description),
-        WrittenTo::Nowhere => left_out.push(description),
-    };
-    let proposed = found.law.as_ref().filter(|proposed| proposed.law.is_ok());
-    let law = proposed.and_then(|proposed| proposed.law.as_ref().ok());
-    // what was undone before there was a model is nothing to write into it
-    for finding in found.diagnosis.findings.iter().filter(|finding| finding.is_of_model()) {
-        let cause = (finding.effect.cause_at)(&finding.location);
-        let finding = beside(law, finding);
-        put(write(&finding, model, &mut extended), cause);
-    }
-    for law in law.into_iter().flat_map(Law::all) {
-        let (destination, description) = write_law(law, model, &mut extended);
-        put(destination, description);
-    }
-    if entered.is_empty() && removed.is_empty() {
+    let Some(Extended { campaign: extended, entered, removed, left_out }) = Extended::of(found) else {
         return Ok(None);
-    }
-    extended.take_up_moves();
+    };
     let calibration = calibrate(&extended, model.calibration.mode, &Options::default())?;
     let held_out = found.diagnosis.held_out.as_ref();
     let sd = held_out.map_or(found.diagnosis.noise, |held_out| held_out.after);
-    let sd = proposed.and_then(Proposed::held_out_with).unwrap_or(sd);
+    let sd = proposed(found).and_then(Proposed::held_out_with).unwrap_or(sd);
     let mut comments = Vec::new();
     let mut comment = |what: &str, list: &[String]| {
         if !list.is_empty() {
@@ -138,9 +92,7 @@ pub fn apply(found: &CalibrationDiagnosis, names: &FileNames, above: &[String]) 
         std::iter::once(corrected).chain(above.iter().cloned()).chain(corrections).collect();
     files.extend(campaign_files(model.campaign, &extended, names, &above)?);
     let mean = Summary::of(&calibration.residuals()).mean;
-    let unseen = |calibration: &Calibration| Some(calibration.validation.as_ref()?.summary.mean);
-    let unseen = unseen(&model.calibration).zip(unseen(&calibration));
-    Ok(Some(Applied { files, undone: Vec::new(), entered, removed, left_out, mean, unseen }))
+    Ok(Some(Applied { files, undone: Vec::new(), entered, removed, left_out, mean }))
 }
 
 /// The campaign with the nominal robot and its effects. Rod and readings are as they were.

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::calibration::Summary;
-use crate::diagnosis::calibration::CalibrationDiagnosis;
+use crate::diagnosis::calibration::{CalibrationDiagnosis, Validated};
 use crate::report::diagnosis::headline::um;
 use crate::report::table::{Column, Table};
 use crate::units::UM;
@@ -14,6 +14,8 @@ pub struct Distances {
     pub after: Vec<f64>,
     /// Of poses while they were held out.
     pub held_out: Option<(Vec<f64>, Vec<f64>)>,
+    /// Of the validation, where there is one.
+    pub validated: Option<Validated>,
 }
 
 impl Distances {
@@ -29,6 +31,7 @@ impl Distances {
             after: lengths(&found.diagnosis.after),
             held_out: held_out
                 .map(|held_out| (known(&held_out.errors_before), known(&held_out.errors_after))),
+            validated: found.model.validated.clone(),
         }
     }
 
@@ -39,11 +42,16 @@ impl Distances {
 
     pub fn json(&self) -> Value {
         let summary = |lengths: &[f64]| distances_json(&Summary::of(lengths));
+        let own = self.validated.as_ref().and_then(|validated| validated.own.as_ref());
         json!({
             "before": summary(&self.before),
             "after": summary(&self.after),
             "heldout_before": self.held_out.as_ref().map(|(before, _)| summary(before)),
             "heldout_after": self.held_out.as_ref().map(|(_, after)| summary(after)),
+            "validation_before": self.validated.as_ref().map(|own| summary(&own.before)),
+            "validation_corrected": own.map(|own| summary(&own.errors)),
+            "validation_events": own.map_or_else(Vec::new, |own| own.causes.clone()),
+            "validation_after": self.validated.as_ref().and_then(|own| own.after.as_deref()).map(summary),
         })
     }
 
@@ -62,6 +70,18 @@ impl Distances {
         if let Some((before, after)) = &self.held_out {
             row("held out, calibration as it is", before);
             row("held out, with the findings", after);
+        }
+        if let Some(validated) = &self.validated {
+            row("validation, calibration as it is", &validated.before);
+            let more = [
+                ("validation, calibrated again with the findings", validated.after.as_ref()),
+                (
+                    "validation, the same without its own events",
+                    validated.own.as_ref().map(|own| &own.errors),
+                ),
+            ];
+            more.into_iter()
+                .for_each(|(name, errors)| errors.into_iter().for_each(|errors| row(name, errors)));
         }
         table
     }

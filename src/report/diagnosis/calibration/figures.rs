@@ -164,7 +164,7 @@ pub mod tests {
     use crate::calibration::Campaign;
     use crate::calibration::campaign::Targets;
     use crate::calibration::{Mode, Options};
-    use crate::diagnosis::calibration::diagnose_as_recorded;
+    use crate::diagnosis::calibration::{diagnose_as_recorded, look_at_validation};
 
     /// The demonstration with a displacement of every row, diagnosed.
     pub fn with_diagnosed(
@@ -184,7 +184,8 @@ pub mod tests {
         let mut campaign = Campaign::from_texts("campaign.toml", text, &find).unwrap();
         let Targets::Points(points) = &mut campaign.measurements.targets else { panic!("no points") };
         points.iter_mut().enumerate().for_each(|(row, point)| *point += by(row));
-        let found = diagnose_as_recorded(&campaign, Mode::Fea, &Options::default()).unwrap();
+        let mut found = diagnose_as_recorded(&campaign, Mode::Fea, &Options::default()).unwrap();
+        look_at_validation(&mut found).unwrap();
         judge(&campaign, &found);
     }
 }

@@ -26,16 +26,6 @@ pub fn applied(report: &mut Report, json: &mut Value, applied: &Applied) {
         "Calibrated again with that, the mean distance of the tip from its measured position is {} µm.",
         um(applied.mean)
     ));
-    if let Some((without, with)) = applied.unseen {
-        let (without, with) = (um(without), um(with));
-        points
-            .push(format!("At the validation poses it is {with} µm, and {without} µm without the findings."));
-        if applied.is_worse() {
-            report.warnings.push(format!(
-                "the corrected robot is worse at the validation poses: {with} µm on average, {without} µm without the findings; do not use it"
-            ));
-        }
-    }
     report.sections.push(Section::new("The corrected robot", vec![Block::List(points)]));
     json["applied"] = json!({
         "files": applied.files.iter().map(|(name, _)| name).collect::<Vec<_>>(),
@@ -44,8 +34,6 @@ pub fn applied(report: &mut Report, json: &mut Value, applied: &Applied) {
         "removed": applied.removed,
         "left_out": applied.left_out,
         "mean_um": applied.mean / UM,
-        "validation_mean_before_um": applied.unseen.map(|(without, _)| without / UM),
-        "validation_mean_um": applied.unseen.map(|(_, with)| with / UM),
     });
 }
 

@@ -1,0 +1,134 @@
+//! What the findings are worth at the validation poses, of which no search has seen any.
+
+use crate::diagnosis::Limitation;
+use crate::diagnosis::calibration::{CalibrationDiagnosis, Validated};
+use crate::inference::Finding;
+use crate::report::diagnosis::headline::{from_to, size};
+use crate::units::significant;
+
+/// `At the 62 validation poses, which no search has seen, the error falls from 403 to 290 µm on
+/// average.`
+pub fn sentence(found: &CalibrationDiagnosis) -> Option<String> {
+    let is_fitted = !found.limits.contains(&Limitation::NotConverged);
+    let validated = found.model.validated.as_ref().filter(|_| is_fitted)?;
+    let (before, after) = validated.means();
+    let poses = format!("At the {} validation poses, which no search has seen,", validated.before.len());
+    let there = match after {
+        Some(after) if validated.is_worse() => {
+            format!("with what was found the error grows {} on average", from_to(before, after))
+        }
+        Some(after) if after < before && size(after) != size(before) => {
+            format!("the error falls {} on average", from_to(before, after))
+        }
+        Some(after) => {
+            let (before, after) = (size(before), size(after));
+            format!("the error is {before} on average, and {after} with what was found")
+        }
+        None => format!("the error is {} on average", size(before)),
+    };
+    let is_lost = after.is_none() && found.diagnosis.findings.iter().any(Finding::is_of_model);
+    let is_written = if is_lost { "; nothing of what was found can be written for them" } else { "" };
+    let far = far(validated);
+    // as little as was expected says nothing more of no finding
+    if after.is_none() && !is_lost && far.is_empty() {
+        return None;
+    }
+    Some(format!("{poses} {there}{is_written}{far}."))
+}
+
+/// Said where the error is far from what poses of the recording lead to expect.
+fn far(validated: &Validated) -> String {
+    if !validated.is_far() {
+        return String::new();
+    }
+    let (expected, (before, after)) = (validated.expected, validated.means());
+    let whose = if validated.is_held_out { "the poses held out" } else { "the poses of the calibration" };
+    let times = significant(after.unwrap_or(before) / expected, 2);
+    let times = format!(": {times} times that of {whose} ({})", size(expected));
+    let Some(own) = &validated.own else {
+        return format!("{times}, which say nothing of poses like these");
+    };
+    let (causes, left) = (own.causes.join("; "), size(own.mean()));
+    let still = if own.explain(expected) { "" } else { ", and the others say nothing of poses like these" };
+    format!("{times}. They show errors of their own: {causes}. Without these the error is {left}{still}")
+}
+
+/// What nobody should use.
+pub fn warning(validated: &Validated) -> Option<String> {
+    let (before, after) = validated.means();
+    after.filter(|_| validated.is_worse()).map(|after| {
+        format!(
+            "the corrected robot is worse at the validation poses: {} on average, {} without the findings; do not use it",
+            size(after),
+            size(before)
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::super::figures::tests::with_diagnosed;
+    use super::*;
+    use crate::diagnosis::calibration::OwnEvents;
+    use crate::report::diagnosis::calibration::{json, report};
+    use crate::units::UM;
+
+    fn um(mean: f64) -> Vec<f64> {
+        vec![0.8 * mean * UM, 1.2 * mean * UM]
+    }
+
+    #[test]
+    fn what_findings_are_worth_at_the_validation_is_said() {
+        with_diagnosed(&|row| Vector3::z() * (5.0 * UM * row as f64), |_, found| {
+            let own = found.model.validated.as_ref().expect("the campaign has validation poses");
+            assert!(!own.is_worse() && !own.is_far() && own.after.is_some(), "{own:?}");
+            let mut found = found.clone();
+            let mut said = |before: f64, after: Option<f64>, causes: Option<(&str, f64)>| {
+                let own =
+                    causes.map(|(cause, left)| OwnEvents { causes: vec![cause.into()], errors: um(left) });
+                let (before, after) = (um(before), after.map(um));
+                let expected = 81.0 * UM;
+                let validated = Validated { before, after, expected, is_held_out: true, own };
+                found.model.validated = Some(validated);
+                let (said, json) = (sentence(&found).unwrap(), json(&found));
+                assert!(json["headline"].as_str().unwrap().ends_with(&said));
+                let warnings = report(&found).warnings;
+                let warned = warnings.iter().find(|warning| warning.contains("validation")).cloned();
+                let events = json["distances"]["validation_events"].as_array().unwrap().len();
+                (said.replace("At the 2 validation poses, which no search has seen, ", ""), warned, events)
+            };
+            let falls = said(136.0, Some(83.0), None);
+            assert_eq!(falls, ("the error falls from 136 to 83 µm on average.".into(), None, 0));
+            assert_eq!(
+                said(136.0, Some(136.1), None).0,
+                "the error is 136 µm on average, and 136 µm with what was found."
+            );
+            let nowhere =
+                "the error is 136 µm on average; nothing of what was found can be written for them.";
+            assert_eq!(said(136.0, None, None).0, nowhere);
+            let worse = said(78.0, Some(606.0), None);
+            assert_eq!(
+                worse.0,
+                "with what was found the error grows from 78 to 606 µm on average: 7.5 times that of the poses held out \
+                 (81 µm), which say nothing of poses like these."
+            );
+            let warning = "the corrected robot is worse at the validation poses: 606 µm on average, 78 µm without the findings; do not use it";
+            assert_eq!(worse.1.as_deref(), Some(warning));
+            let moved = said(403.0, Some(252.0), Some(("a shift", 158.0)));
+            assert_eq!(
+                moved,
+                (
+                    "the error falls from 403 to 252 µm on average: 3.1 times that of the poses held out (81 µm). They show \
+                     errors of their own: a shift. Without these the error is 158 µm."
+                        .into(),
+                    None,
+                    1
+                )
+            );
+            let still = said(403.0, Some(252.0), Some(("a shift", 200.0))).0;
+            assert!(still.ends_with("200 µm, and the others say nothing of poses like these."), "{still}");
+        });
+    }
+}

@@ -44,7 +44,7 @@ pub use self::laws::textbook::remark;
 pub use self::model::CalibrationModel;
 pub use self::model::gear::{Curve, Gear};
 pub use self::model::law::{Course, Frame, Law, RodLoad, TakenUp};
-pub use self::model::validated::{OwnEvents, Validated};
+pub use self::model::validated::{OwnDiagnosis, Validated};
 pub use self::validated::look_at_validation;
 pub use self::write_back::apply::{Applied, apply};
 pub use self::write_back::destination::law_destination;

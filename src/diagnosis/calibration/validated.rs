@@ -2,7 +2,7 @@
 
 mod own;
 
-use self::own::own_events;
+use self::own::own_diagnosis;
 use super::CalibrationDiagnosis;
 use super::model::validated::{Validated, mean};
 use super::write_back::extended::Extended;
@@ -52,7 +52,7 @@ fn validated(found: &CalibrationDiagnosis) -> Result<Option<Validated>> {
     let mut validated = Validated { before, after, expected, is_held_out, own: None };
     if validated.is_far() {
         let campaign = extended.as_ref().map_or(found.model.campaign, |extended| &extended.campaign);
-        validated.own = own_events(campaign, again.as_ref().unwrap_or(calibration))?;
+        validated.own = own_diagnosis(campaign, again.as_ref().unwrap_or(calibration))?;
     }
     Ok(Some(validated))
 }

@@ -18,18 +18,25 @@ pub struct Validated {
     pub expected: f64,
     /// True where poses were held out.
     pub is_held_out: bool,
-    /// What happened while the validation was recorded, where it is far from what is expected.
-    pub own: Option<OwnEvents>,
+    /// What the validation shows by itself, where it is far from what is expected.
+    pub own: Option<OwnDiagnosis>,
 }
 
-/// What happened while a validation was recorded.
+/// What the diagnosis of a validation by itself says.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct OwnEvents {
-    /// In words: `a shift (front/0, after row 2)`.
-    pub causes: Vec<String>,
-    /// Errors without it, m, one per pose.
+pub struct OwnDiagnosis {
+    /// What belongs to its poses and not to the robot, in words: `a shift (front/0, after row 2)`.
+    pub events: Vec<String>,
+    /// Errors without that, m, one per pose; as they are where there is nothing of the kind.
     pub errors: Vec<f64>,
+    /// What would belong to the robot, in words: `a transmission error (joint 3)`.
+    pub of_robot: Vec<String>,
+    /// What an error follows that no effect explains: `follows joint 2`; empty where it follows
+    /// nothing that was recorded. `None` where all is explained but scatter.
+    pub unexplained: Option<String>,
+    /// What scatters without any cause, per coordinate, m.
+    pub scatter: f64,
 }
 
 impl Validated {
@@ -50,8 +57,8 @@ impl Validated {
     }
 }
 
-impl OwnEvents {
-    /// Mean error without them, m.
+impl OwnDiagnosis {
+    /// Mean error without its events, m.
     pub fn mean(&self) -> f64 {
         mean(&self.errors)
     }

@@ -111,6 +111,6 @@ fn a_spot_of_a_kuka_that_moved_while_it_was_recorded_does_not_refute_the_robot()
     let (before, Some(after)) = validated.means() else { panic!("{validated:?}") };
     assert!(before > 390.0 * UM && after < 0.7 * before, "{before} {after}");
     let own = validated.own.expect("they moved");
-    assert!(own.causes.iter().any(|cause| cause.contains("after row 2")), "{:?}", own.causes);
+    assert!(own.events.iter().any(|cause| cause.contains("after row 2")), "{:?}", own.events);
     assert!(own.mean() < 0.7 * after, "{}", own.mean());
 }

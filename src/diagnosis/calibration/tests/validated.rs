@@ -29,18 +29,50 @@ fn what_happened_in_the_validation_is_no_error_of_the_robot() {
     });
     assert!(knocked.is_far(), "{knocked:?}");
     let own = knocked.own.clone().expect("something happened");
-    assert_eq!(own.causes, [format!("a shift of the base (after pose {})", knocked.before.len() / 2)]);
+    assert_eq!(own.events, [format!("a shift of the base (after pose {})", knocked.before.len() / 2)]);
     assert!(own.explain(knocked.expected) && own.mean() < 100.0 * UM, "{}", own.mean());
 }
 
-/// An error that follows the angles is the robot's: nothing happened.
+/// An error that follows an angle is the robot's; one that follows the order of the poses is not.
 #[test]
 fn what_follows_the_angles_of_the_validation_did_not_happen_there() {
     let wavy = validated(&|recording| {
         let turned: Vec<f64> = (0..recording.len()).map(|row| recording.joints(row)[1]).collect();
         points(recording).iter_mut().zip(turned).for_each(|(point, q)| point.z += 1.5 * MM * (4.0 * q).sin());
     });
-    assert!(wavy.is_far() && wavy.own.is_none(), "{:?}", wavy.own);
+    let own = wavy.own.clone().expect("it is far off");
+    assert!(wavy.is_far() && own.events.is_empty() && own.errors == wavy.before, "{own:?}");
+    assert!(!own.of_robot.is_empty() || own.unexplained.is_some(), "{own:?}");
+    let drifting = validated(&|recording| {
+        points(recording).iter_mut().enumerate().for_each(|(row, point)| point.y += 0.02 * MM * row as f64);
+    });
+    let own = drifting.own.clone().expect("it is far off");
+    assert!(own.explain(drifting.expected) && own.events.len() == 1 && own.of_robot.is_empty(), "{own:?}");
+}
+
+/// A device that measures the validation less accurately is no error of the robot either.
+#[test]
+fn a_validation_that_is_measured_less_accurately_scatters() {
+    let noisy = validated(&|recording| {
+        let mut random = Random::seeded(8, 0);
+        let noise = |_: usize| 100.0 * UM * random.normal();
+        let noise: Vec<f64> = (0..3 * recording.len()).map(noise).collect();
+        points(recording).iter_mut().zip(noise.chunks(3)).for_each(|(point, own)| {
+            *point += Vector3::new(own[0], own[1], own[2]);
+        });
+    });
+    let own = noisy.own.clone().expect("it is far off");
+    assert!(own.events.is_empty() && own.of_robot.is_empty() && own.unexplained.is_none(), "{own:?}");
+    assert!((own.scatter - 109.0 * UM).abs() < 20.0 * UM, "{}", own.scatter);
+}
+
+/// Positions that were written in another order than the angles.
+#[test]
+fn a_mistake_in_the_validation_alone_is_named() {
+    let displaced = validated(&|recording| points(recording).rotate_left(1));
+    let own = displaced.own.clone().expect("it is far off");
+    assert_eq!(own.events, ["rows displaced (x_mm, y_mm, z_mm)"]);
+    assert!(own.explain(displaced.expected), "{}", own.mean());
 }
 
 /// As it was recorded, the validation is as far off as the poses held out: nothing is looked into.

@@ -5,40 +5,65 @@
 
 use nalgebra::Vector3;
 
-use crate::calibration::campaign::{Campaign, ParameterConstraints, Refit, Targets};
+use crate::calibration::campaign::{Campaign, ParameterConstraints, Recording, Refit, Targets};
 use crate::calibration::{Calibration, Mode, Options, Summary, validate};
-use crate::diagnosis::calibration::OwnEvents;
+use crate::diagnosis::calibration::OwnDiagnosis;
 use crate::diagnosis::calibration::{CalibrationDiagnosis, Neighbours, mend};
 use crate::error::Result;
-use crate::inference::{Finding, WrittenTo};
+use crate::inference::{Discrepancy, Finding, Location, WrittenTo};
 
 /// Without it the error is so many times smaller, or it is not what makes the error.
 const HELPS: f64 = 1.2;
 /// So many rivals of a cause are said.
 const RIVALS_SAID: usize = 2;
 
-/// Events of the validation of `campaign`, which `calibration` has calibrated; `None` where there
-/// is none that makes a difference.
+/// What the validation of `campaign`, which `calibration` has calibrated, shows by itself; `None`
+/// where it has too few poses to show anything.
 ///
 /// # Errors
-/// As [`mend`].
-pub fn own_events(campaign: &Campaign, calibration: &Calibration) -> Result<Option<OwnEvents>> {
-    let Some((recording, own)) = campaign.validation.as_ref().zip(of_validation(campaign, calibration))
-    else {
-        return Ok(None);
-    };
-    // too few poses for a diagnosis show no event
-    let Ok(mended) = mend(&own, Mode::None, &Neighbours::default(), &Options::default()) else {
-        return Ok(None);
-    };
-    let Ok(mut found) = mended.diagnose() else { return Ok(None) };
+/// As [`validate`].
+pub fn own_diagnosis(campaign: &Campaign, calibration: &Calibration) -> Result<Option<OwnDiagnosis>> {
+    let Some(own) = of_validation(campaign, calibration) else { return Ok(None) };
+    let (none, options) = (Neighbours::default(), Options::default());
+    let Ok(mended) = mend(&own, Mode::None, &none, &options) else { return Ok(None) };
+    let Ok(found) = mended.diagnose() else { return Ok(None) };
     // what would belong to the robot is an error of the calibrated one
-    found.diagnosis.findings.retain(|own| own.written_to != WrittenTo::Model || !own.is_of_model());
-    let causes = found.diagnosis.findings.iter().map(cause).collect::<Vec<_>>();
-    let before = validate(&calibration.setup, recording, campaign.refit)?.summary.mean;
-    let errors = errors_without(&found, calibration, campaign.refit)?;
-    let is_less = before > HELPS * Summary::of(&errors).mean;
-    Ok((!causes.is_empty() && is_less).then_some(OwnEvents { causes, errors }))
+    let is_of_robot = |own: &&Finding| own.written_to == WrittenTo::Model && own.is_of_model();
+    let (of_robot, events): (Vec<_>, Vec<_>) = found.diagnosis.findings.iter().partition(is_of_robot);
+    let (of_robot, mut events) = (causes(&of_robot), (causes(&events), events));
+    let mut moved = displacement(&found, &events.1);
+    let mut unexplained = unexplained(&found);
+    // nor does what follows the time alone belong to it
+    if let Some(left) = found.diagnosis.discrepancy.as_ref().filter(|left| is_of_time(left))
+        && let Some(follows) = unexplained.take()
+    {
+        events.0.push(format!("an unexplained error, which {follows}"));
+        moved.iter_mut().zip(found.model.by_row(&left.shape)).for_each(|(sum, own)| *sum += own);
+    }
+    let recording = campaign.validation.as_ref().unwrap_or(&own.measurements);
+    let before = validate(&calibration.setup, recording, campaign.refit)?;
+    let errors = errors_without(&mended.campaign.measurements, &moved, calibration, campaign.refit)?;
+    let is_less = before.summary.mean > HELPS * Summary::of(&errors).mean;
+    let (events, errors) = if is_less { (events.0, errors) } else { (Vec::new(), before.errors) };
+    let scatter = found.diagnosis.noise;
+    Ok(Some(OwnDiagnosis { events, errors, of_robot, unexplained, scatter }))
+}
+
+/// What an error without a name follows.
+fn unexplained(found: &CalibrationDiagnosis) -> Option<String> {
+    let left = found.diagnosis.discrepancy.as_ref()?;
+    Some(match &left.location {
+        Some(Location::Curve { follows, .. }) => follows.clone(),
+        _ => String::new(),
+    })
+}
+
+fn is_of_time(left: &Discrepancy) -> bool {
+    matches!(&left.location, Some(Location::Curve { along: Some(along), .. }) if along.is_of_time())
+}
+
+fn causes(findings: &[&Finding]) -> Vec<String> {
+    findings.iter().map(|finding| cause(finding)).collect()
 }
 
 /// A finding with what the poses cannot distinguish from it, in words.
@@ -50,22 +75,32 @@ fn cause(finding: &Finding) -> String {
     all.join(", or ")
 }
 
-/// Errors of the calibrated robot at its validation, m, without what was `found` there.
-fn errors_without(found: &CalibrationDiagnosis, calibration: &Calibration, refit: Refit) -> Result<Vec<f64>> {
+/// What findings do to each row, m.
+fn displacement(found: &CalibrationDiagnosis, findings: &[&Finding]) -> Vec<Vector3<f64>> {
     let model = &found.model;
-    let mut recording = model.campaign.measurements.clone();
-    let mut moved = vec![Vector3::zeros(); recording.len()];
-    for finding in found.diagnosis.findings.iter().filter(|finding| finding.is_of_model()) {
+    let mut moved = vec![Vector3::zeros(); model.campaign.measurements.len()];
+    for finding in findings.iter().filter(|finding| finding.is_of_model()) {
         let own = model.by_row(&model.response_of(finding));
         moved.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
     }
+    moved
+}
+
+/// Errors of the calibrated robot at the poses of a recording, m, without what has `moved` each row.
+fn errors_without(
+    recording: &Recording,
+    moved: &[Vector3<f64>],
+    calibration: &Calibration,
+    refit: Refit,
+) -> Result<Vec<f64>> {
+    let mut recording = recording.clone();
     if let Targets::Points(points) = &mut recording.targets {
-        points.iter_mut().zip(&moved).for_each(|(point, moved)| *point -= moved);
+        points.iter_mut().zip(moved).for_each(|(point, moved)| *point -= moved);
         return Ok(validate(&calibration.setup, &recording, refit)?.errors);
     }
     // of a socket nothing was measured: its tips are where it was less what it moved
     let tips = validate(&calibration.setup, &recording, refit)?.tips;
-    let tips: Vec<_> = tips.iter().zip(&moved).map(|(tip, moved)| tip + moved).collect();
+    let tips: Vec<_> = tips.iter().zip(moved).map(|(tip, moved)| tip + moved).collect();
     Ok(recording.minus_group_means(&tips).iter().map(|off| off.norm()).collect())
 }
 

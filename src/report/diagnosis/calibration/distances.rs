@@ -40,6 +40,18 @@ impl Distances {
         self.held_out.as_ref().map(|(before, after)| (mean(before), mean(after)))
     }
 
+    /// Of the validation, with what they are of.
+    pub fn of_validation(&self) -> Vec<(&'static str, &[f64])> {
+        let Some(Validated { before, after, own, .. }) = &self.validated else { return Vec::new() };
+        let own = own.as_ref().filter(|own| !own.events.is_empty());
+        let all = [
+            ("validation, calibration as it is", Some(before)),
+            ("validation, calibrated with the findings", after.as_ref()),
+            ("validation without its own events", own.map(|own| &own.errors)),
+        ];
+        all.into_iter().filter_map(|(name, lengths)| Some((name, &lengths?[..]))).collect()
+    }
+
     pub fn json(&self) -> Value {
         let summary = |lengths: &[f64]| distances_json(&Summary::of(lengths));
         let own = self.validated.as_ref().and_then(|validated| validated.own.as_ref());
@@ -49,8 +61,8 @@ impl Distances {
             "heldout_before": self.held_out.as_ref().map(|(before, _)| summary(before)),
             "heldout_after": self.held_out.as_ref().map(|(_, after)| summary(after)),
             "validation_before": self.validated.as_ref().map(|own| summary(&own.before)),
-            "validation_corrected": own.map(|own| summary(&own.errors)),
-            "validation_events": own.map_or_else(Vec::new, |own| own.causes.clone()),
+            "validation_corrected": own.filter(|own| !own.events.is_empty()).map(|own| summary(&own.errors)),
+            "validation_events": own.map_or_else(Vec::new, |own| own.events.clone()),
             "validation_after": self.validated.as_ref().and_then(|own| own.after.as_deref()).map(summary),
         })
     }
@@ -71,18 +83,7 @@ impl Distances {
             row("held out, calibration as it is", before);
             row("held out, with the findings", after);
         }
-        if let Some(validated) = &self.validated {
-            row("validation, calibration as it is", &validated.before);
-            let more = [
-                ("validation, calibrated again with the findings", validated.after.as_ref()),
-                (
-                    "validation, the same without its own events",
-                    validated.own.as_ref().map(|own| &own.errors),
-                ),
-            ];
-            more.into_iter()
-                .for_each(|(name, errors)| errors.into_iter().for_each(|errors| row(name, errors)));
-        }
+        self.of_validation().into_iter().for_each(|(name, lengths)| row(name, lengths));
         table
     }
 }

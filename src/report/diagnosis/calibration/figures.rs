@@ -5,7 +5,7 @@ mod events;
 
 use nalgebra::Vector3;
 
-use super::distances::Distances;
+use super::distances::{Distances, mean};
 use super::joints::joint_of;
 use crate::diagnosis::calibration::{CalibrationDiagnosis, GearError};
 use crate::inference::{Covariate, Finding, JointVariable, Location, Variable};
@@ -141,7 +141,10 @@ pub fn vectors(found: &CalibrationDiagnosis) -> Figure {
     }
 }
 
-/// Histograms of the distances, held-out ones included.
+/// Errors of a validation that are so many times larger than the others are shown in no histogram.
+const SHOWN: f64 = 10.0;
+
+/// Histograms of the distances, those of held-out poses and of the validation included.
 pub fn distribution(found: &CalibrationDiagnosis, distances: &Distances) -> Figure {
     let method = |label: &str, lengths: &[f64]| MethodErrors {
         label: label.into(),
@@ -154,6 +157,11 @@ pub fn distribution(found: &CalibrationDiagnosis, distances: &Distances) -> Figu
     if let Some((before, after)) = &distances.held_out {
         methods.push(method("held out, as it is", before));
         methods.push(method("held out, with the findings", after));
+    }
+    // what is off by more would leave nothing else to be seen
+    let is_shown = |lengths: &&[f64]| mean(lengths) < SHOWN * mean(&distances.after);
+    for (name, lengths) in distances.of_validation() {
+        methods.extend(Some(lengths).filter(is_shown).map(|lengths| method(name, lengths)));
     }
     error_distribution(&methods)
 }

@@ -43,14 +43,40 @@ fn far(validated: &Validated) -> String {
     }
     let (expected, (before, after)) = (validated.expected, validated.means());
     let whose = if validated.is_held_out { "the poses held out" } else { "the poses of the calibration" };
-    let times = significant(after.unwrap_or(before) / expected, 2);
+    let times = times(after.unwrap_or(before) / expected);
     let times = format!(": {times} times that of {whose} ({})", size(expected));
-    let Some(own) = &validated.own else {
-        return format!("{times}, which say nothing of poses like these");
+    let unlike = "which say nothing of poses like these";
+    let Some(own) = &validated.own else { return format!("{times}, {unlike}") };
+    let events = match own.events.is_empty() {
+        true => String::new(),
+        false => {
+            let (events, left) = (own.events.join("; "), size(own.mean()));
+            format!(". They show errors of their own: {events}. Without these the error is {left}")
+        }
     };
-    let (causes, left) = (own.causes.join("; "), size(own.mean()));
-    let still = if own.explain(expected) { "" } else { ", and the others say nothing of poses like these" };
-    format!("{times}. They show errors of their own: {causes}. Without these the error is {left}{still}")
+    if own.explain(expected) {
+        return times + &events;
+    }
+    let rest = match (own.of_robot.is_empty(), own.unexplained.as_deref()) {
+        (false, _) => format!("here the robot shows {}", own.of_robot.join("; ")),
+        (true, Some("")) => "an error that no effect explains".to_owned(),
+        (true, Some(follows)) => format!("an unexplained error {follows}"),
+        (true, None) => {
+            let scatter = size(own.scatter);
+            return format!(
+                "{times}{events}. They scatter by {scatter} per coordinate and follow nothing, as poses do that are measured less accurately"
+            );
+        }
+    };
+    match events.is_empty() {
+        true => format!("{times}, {unlike}: {rest}"),
+        false => format!("{times}{events}; {rest}"),
+    }
+}
+
+/// How many times; of an error that has nothing to do with the other, no number says more.
+fn times(ratio: f64) -> String {
+    if ratio < 1e3 { significant(ratio, 2) } else { "over 1000".to_owned() }
 }
 
 /// What nobody should use.
@@ -71,7 +97,7 @@ mod tests {
 
     use super::super::figures::tests::with_diagnosed;
     use super::*;
-    use crate::diagnosis::calibration::OwnEvents;
+    use crate::diagnosis::calibration::OwnDiagnosis;
     use crate::report::diagnosis::calibration::{json, report};
     use crate::units::UM;
 
@@ -85,9 +111,18 @@ mod tests {
             let own = found.model.validated.as_ref().expect("the campaign has validation poses");
             assert!(!own.is_worse() && !own.is_far() && own.after.is_some(), "{own:?}");
             let mut found = found.clone();
-            let mut said = |before: f64, after: Option<f64>, causes: Option<(&str, f64)>| {
-                let own =
-                    causes.map(|(cause, left)| OwnEvents { causes: vec![cause.into()], errors: um(left) });
+            let mut all = |before: f64,
+                           after: Option<f64>,
+                           causes: Option<(&str, f64)>,
+                           of_robot: &[&str],
+                           unexplained: Option<&str>| {
+                let own = causes.map(|(event, left)| OwnDiagnosis {
+                    events: if event.is_empty() { Vec::new() } else { vec![event.into()] },
+                    errors: um(left),
+                    of_robot: of_robot.iter().map(ToString::to_string).collect(),
+                    unexplained: unexplained.map(str::to_owned),
+                    scatter: 35.0 * UM,
+                });
                 let (before, after) = (um(before), after.map(um));
                 let expected = 81.0 * UM;
                 let validated = Validated { before, after, expected, is_held_out: true, own };
@@ -99,6 +134,7 @@ mod tests {
                 let events = json["distances"]["validation_events"].as_array().unwrap().len();
                 (said.replace("At the 2 validation poses, which no search has seen, ", ""), warned, events)
             };
+            let mut said = |before, after, causes| all(before, after, causes, &[], Some(""));
             let falls = said(136.0, Some(83.0), None);
             assert_eq!(falls, ("the error falls from 136 to 83 µm on average.".into(), None, 0));
             assert_eq!(
@@ -116,9 +152,8 @@ mod tests {
             );
             let warning = "the corrected robot is worse at the validation poses: 606 µm on average, 78 µm without the findings; do not use it";
             assert_eq!(worse.1.as_deref(), Some(warning));
-            let moved = said(403.0, Some(252.0), Some(("a shift", 158.0)));
             assert_eq!(
-                moved,
+                said(403.0, Some(252.0), Some(("a shift", 158.0))),
                 (
                     "the error falls from 403 to 252 µm on average: 3.1 times that of the poses held out (81 µm). They show \
                      errors of their own: a shift. Without these the error is 158 µm."
@@ -127,8 +162,30 @@ mod tests {
                     1
                 )
             );
-            let still = said(403.0, Some(252.0), Some(("a shift", 200.0))).0;
-            assert!(still.ends_with("200 µm, and the others say nothing of poses like these."), "{still}");
+            let moved = |rest: &str| {
+                let far = "the error falls from 403 to 252 µm on average: 3.1 times that of the poses held out (81 µm)";
+                format!("{far}{rest}")
+            };
+            let mut far = |event: &str, left: f64, of_robot: &[&str], unexplained: Option<&str>| {
+                all(403.0, Some(252.0), Some((event, left)), of_robot, unexplained).0
+            };
+            let events = ". They show errors of their own: a shift. Without these the error is 200 µm";
+            let slow = Some("follows the order");
+            for (said, rest) in [
+                (far("a shift", 200.0, &["play (joint 3)"], slow), format!("{events}; here the robot shows play (joint 3).")),
+                (far("a shift", 200.0, &[], slow), format!("{events}; an unexplained error follows the order.")),
+                (
+                    far("", 252.0, &[], Some("")),
+                    ", which say nothing of poses like these: an error that no effect explains.".into(),
+                ),
+                (
+                    far("", 252.0, &[], None),
+                    ". They scatter by 35 µm per coordinate and follow nothing, as poses do that are measured less accurately."
+                        .into(),
+                ),
+            ] {
+                assert_eq!(said, moved(&rest));
+            }
         });
     }
 }

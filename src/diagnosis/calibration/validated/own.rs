@@ -86,7 +86,7 @@ fn displacement(found: &CalibrationDiagnosis, findings: &[&Finding]) -> Vec<Vect
     moved
 }
 
-/// Errors of the calibrated robot at the poses of a recording, m, without what has `moved` each row.
+/// Errors of the calibrated robot at the poses of a recording, m, without what `moved` each row.
 fn errors_without(
     recording: &Recording,
     moved: &[Vector3<f64>],

@@ -9,6 +9,9 @@ use crate::inference::{Finding, Kind};
 use crate::report::{Block, Section};
 use crate::units::capital;
 
+/// So many places where an effect is hidden are said; all of them are in the JSON.
+const PLACES: usize = 4;
+
 pub fn all(subject: &mut Subject) -> Vec<Section> {
     let mut sections = vec![findings(subject), location(subject)];
     let mut helps = held_out_section(subject);
@@ -124,7 +127,12 @@ fn remains(subject: &Subject) -> Section {
 /// What the base model hides, and what the files have no data for.
 fn not_seen(subject: &Subject) -> Option<Section> {
     let hidden = hidden(subject).into_iter().map(|(effect, places)| {
-        format!("{} ({}): the parameters of the calibration absorb it.", named(effect), places.join(", "))
+        let more = match places.len().saturating_sub(PLACES) {
+            0 => String::new(),
+            more => format!(", and {more} more places"),
+        };
+        let places = places[..places.len().min(PLACES)].join(", ");
+        format!("{} ({places}{more}): the parameters of the calibration absorb it.", named(effect))
     });
     let lacking = subject.not_testable.iter().map(|not| format!("{}: {}", not.effect.title(), not.reason));
     let points: Vec<String> = hidden.chain(lacking).collect();

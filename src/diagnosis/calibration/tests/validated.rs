@@ -1,7 +1,8 @@
 //! Validation poses, of which no search sees any.
 
 use super::*;
-use crate::calibration::campaign::Recording;
+use crate::calibration::campaign::{Recording, Refit};
+use crate::calibration::validate;
 use crate::diagnosis::calibration::Validated;
 use crate::units::MM;
 
@@ -81,4 +82,30 @@ fn a_validation_that_agrees_is_not_diagnosed() {
     let clean = validated(&|_| {});
     assert!(!clean.is_far() && clean.own.is_none() && clean.after.is_none());
     assert_eq!(clean.means(), (clean.before.iter().sum::<f64>() / clean.before.len() as f64, None));
+}
+
+/// With nothing fitted again, a validation that was measured with another tool, or from elsewhere,
+/// says nothing of the robot.
+#[test]
+fn a_validation_with_another_tool_or_from_elsewhere_is_said() {
+    let as_recorded = recorded(&clamps(12), &|_| Vector3::zeros(), 18.0 * UM, 3);
+    let fitted = calibrate(&as_recorded, Mode::Fea, &Options::default()).unwrap();
+    let mut campaign = as_recorded.clone();
+    campaign.refit = Refit::Nothing;
+    let events = |campaign: &Campaign| {
+        let mut found = diagnose_as_recorded(campaign, Mode::Fea, &Options::default()).unwrap();
+        look_at_validation(&mut found).unwrap();
+        let validated = found.model.validated.unwrap();
+        let own = validated.own.expect("it is far off");
+        assert!(own.explain(validated.expected), "{own:?}");
+        own.events
+    };
+    // a short rod
+    assert_eq!(events(&campaign), ["another tool"]);
+    // measured with the tool of the calibration, from elsewhere
+    let recording = campaign.validation.as_mut().unwrap();
+    let again = validate(&fitted.setup, recording, Refit::Nothing).unwrap();
+    let shift = Vector3::new(5.0, -3.0, 2.0) * MM;
+    points(recording).iter_mut().zip(&again.tips).for_each(|(point, tip)| *point = tip + shift);
+    assert_eq!(events(&campaign), ["another place of tracker or base"]);
 }

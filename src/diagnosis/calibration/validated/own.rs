@@ -6,14 +6,17 @@
 use nalgebra::Vector3;
 
 use crate::calibration::campaign::{Campaign, ParameterConstraints, Recording, Refit, Targets};
-use crate::calibration::{Calibration, Mode, Options, Summary, validate};
+use crate::calibration::{Calibration, Mode, Options, Summary, Validation, Warning, validate};
 use crate::diagnosis::calibration::OwnDiagnosis;
 use crate::diagnosis::calibration::{CalibrationDiagnosis, Neighbours, mend};
 use crate::error::Result;
 use crate::inference::{Discrepancy, Finding, Location, WrittenTo};
+use crate::spatial::Pose;
 
 /// Without it the error is so many times smaller, or it is not what makes the error.
 const HELPS: f64 = 1.2;
+/// So many times smaller an error becomes by another place, where that is what was wrong.
+const CURED: f64 = 3.0;
 /// So many rivals of a cause are said.
 const RIVALS_SAID: usize = 2;
 
@@ -23,7 +26,10 @@ const RIVALS_SAID: usize = 2;
 /// # Errors
 /// As [`validate`].
 pub fn own_diagnosis(campaign: &Campaign, calibration: &Calibration) -> Result<Option<OwnDiagnosis>> {
-    let Some(own) = of_validation(campaign, calibration) else { return Ok(None) };
+    let Some(recording) = &campaign.validation else { return Ok(None) };
+    let before = validate(&calibration.setup, recording, campaign.refit)?;
+    let (placed, elsewhere) = placed(campaign, calibration, recording, &before)?;
+    let Some(own) = of_validation(campaign, calibration, placed.placement) else { return Ok(None) };
     let (none, options) = (Neighbours::default(), Options::default());
     let Ok(mended) = mend(&own, Mode::None, &none, &options) else { return Ok(None) };
     let Ok(found) = mended.diagnose() else { return Ok(None) };
@@ -40,13 +46,35 @@ pub fn own_diagnosis(campaign: &Campaign, calibration: &Calibration) -> Result<O
         events.0.push(format!("an unexplained error, which {follows}"));
         moved.iter_mut().zip(found.model.by_row(&left.shape)).for_each(|(sum, own)| *sum += own);
     }
-    let recording = campaign.validation.as_ref().unwrap_or(&own.measurements);
-    let before = validate(&calibration.setup, recording, campaign.refit)?;
-    let errors = errors_without(&mended.campaign.measurements, &moved, calibration, campaign.refit)?;
+    events.0.splice(0..0, elsewhere.map(str::to_owned));
+    let errors = errors_without(&mended.campaign.measurements, &moved, calibration, placed.refit)?;
     let is_less = before.summary.mean > HELPS * Summary::of(&errors).mean;
     let (events, errors) = if is_less { (events.0, errors) } else { (Vec::new(), before.errors) };
     let scatter = found.diagnosis.noise;
     Ok(Some(OwnDiagnosis { events, errors, of_robot, unexplained, scatter }))
+}
+
+/// The validation with base and tool fitted again, and in words why, where the calibrated robot
+/// predicts it far worse without.
+fn placed(
+    campaign: &Campaign,
+    calibration: &Calibration,
+    recording: &Recording,
+    before: &Validation,
+) -> Result<(Validation, Option<&'static str>)> {
+    if (campaign.refit, matches!(recording.targets, Targets::Points(_))) != (Refit::Nothing, true) {
+        return Ok((before.clone(), None));
+    }
+    let again = validate(&calibration.setup, recording, Refit::BaseTool)?;
+    let is_moved = |warning: &Warning| matches!(warning, Warning::ValidationMoved { .. });
+    let elsewhere = match calibration.warnings.iter().any(is_moved) {
+        true => "another place of tracker or base",
+        false => "another tool",
+    };
+    match before.summary.rms > CURED * again.summary.rms {
+        true => Ok((again, Some(elsewhere))),
+        false => Ok((before.clone(), None)),
+    }
 }
 
 /// What an error without a name follows.
@@ -106,22 +134,25 @@ fn errors_without(
 
 /// The validation's poses as a recording of the calibrated robot: without rod and clamps, and with
 /// its numbers as uncertain as the calibration has left them.
-fn of_validation(campaign: &Campaign, calibration: &Calibration) -> Option<Campaign> {
+fn of_validation(
+    campaign: &Campaign,
+    calibration: &Calibration,
+    placement: Option<(Pose, Vector3<f64>)>,
+) -> Option<Campaign> {
     let mut own = campaign.clone();
     own.measurements = own.validation.take()?;
     own.robot = calibration.setup.calibrated();
     (own.rod, own.readings, own.contact_force, own.clamps) = (None, None, None, Vec::new());
     (own.noise, own.clamp_uncertainty) = (None, None);
     own.warnings.clear();
-    let validation = calibration.validation.as_ref()?;
-    let (base, tool) = validation.placement.unwrap_or((calibration.setup.base(), calibration.setup.tool));
+    let (base, tool) = placement.unwrap_or((calibration.setup.base(), calibration.setup.tool));
     let [roll, pitch, yaw] = base.roll_pitch_yaw();
     own.base = [base.origin.x, base.origin.y, base.origin.z, roll, pitch, yaw];
     (own.base_is_given, own.tool, own.tool_is_given) = (true, tool, true);
     own.constraints = ParameterConstraints::default();
     for estimate in &calibration.parameters {
         let (parameter, value) = (estimate.parameter, estimate.value);
-        if parameter.is_placement() && validation.placement.is_some() {
+        if parameter.is_placement() && placement.is_some() {
             continue;
         }
         match estimate.std_error.filter(|error| *error > 0.0) {

@@ -68,6 +68,7 @@ pub fn calibrate<'c>(campaign: &'c Campaign, mode: Mode, options: &Options) -> R
         let extrapolation = Extrapolation::new(&known, &campaign.measurements, recording);
         calibration.warnings.extend(super::checks::extrapolation(&extrapolation));
         calibration.extrapolation = Some(extrapolation);
+        calibration.warnings.extend(super::checks::validation_far(&calibration));
     }
     calibration.before = Some(before(campaign, &calibration, &compensation, options)?);
     calibration.warnings.extend(super::checks::worse_than_nominal(&calibration));

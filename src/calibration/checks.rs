@@ -4,6 +4,7 @@ use super::campaign::{Campaign, Recording};
 use super::extrapolation::{Extrapolation, ranges};
 use super::identifiability::{MOST_SCATTER, UnidentifiedDirection, plausible_range};
 use super::result::Calibration;
+use super::validation::Summary;
 use super::warning::Warning;
 use crate::robot::{Effect, Parameter, ParameterGroup};
 use crate::rod::Rod;
@@ -97,6 +98,20 @@ pub(super) fn worse_than_nominal(calibration: &Calibration) -> Option<Warning> {
     let before = calibration.before.as_ref()?.validation?.mean;
     let after = calibration.validation.as_ref()?.summary.mean;
     (after > WORSE * before).then_some(Warning::WorseThanNominal { before, after })
+}
+
+/// A validation whose mean error is larger than that of the calibration's own poses by this factor
+/// is not only measured less accurately.
+const FAR_OFF: f64 = 3.0;
+
+/// Where the validation is far worse than the poses of the calibration; not where it is known to be
+/// seen from elsewhere.
+pub(super) fn validation_far(calibration: &Calibration) -> Option<Warning> {
+    let is_moved = |warning: &Warning| matches!(warning, Warning::ValidationMoved { .. });
+    let there = calibration.validation.as_ref()?.summary.mean;
+    let here = Summary::of(&calibration.residuals()).mean;
+    let is_far = there > FAR_OFF * here && calibration.is_plausible();
+    (is_far && !calibration.warnings.iter().any(is_moved)).then_some(Warning::ValidationFar { there, here })
 }
 
 /// Poses that make the robot so many times more uncertain than those of the calibration are worth a

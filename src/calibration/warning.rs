@@ -113,6 +113,13 @@ pub enum Warning {
         /// Mean error of the calibrated one, m.
         after: f64,
     },
+    /// The validation is far worse than the poses that the robot was calibrated on.
+    ValidationFar {
+        /// Mean error there, m.
+        there: f64,
+        /// Mean residual of the calibration, m.
+        here: f64,
+    },
     /// The fit of base and tool to the validation did not converge.
     ValidationNotConverged,
 }
@@ -146,6 +153,7 @@ impl fmt::Display for Warning {
             Warning::ValidationMoved { before, after } => validation_moved(f, *before, *after),
             Warning::Extrapolation { ratio, joints } => extrapolation(f, *ratio, joints),
             Warning::WorseThanNominal { before, after } => worse_than_nominal(f, *before, *after),
+            Warning::ValidationFar { there, here } => validation_far(f, *there, *here),
             Warning::ValidationNotConverged => {
                 f.write_str("the fit of base and tool to the validation poses did not converge")
             }
@@ -307,6 +315,17 @@ fn validation_moved(f: &mut fmt::Formatter<'_>, before: f64, after: f64) -> fmt:
          station, or leave out validation_refit = \"none\"",
         significant(before / UM, 3),
         significant(after / UM, 3)
+    )
+}
+
+fn validation_far(f: &mut fmt::Formatter<'_>, there: f64, here: f64) -> fmt::Result {
+    write!(
+        f,
+        "the validation poses are {} mm off on average, those of the calibration {} mm: something is wrong \
+         in their file, or happened while they were recorded, or the robot is known at the others only; \
+         rodcal diagnose calibration looks into it",
+        significant(there / MM, 3),
+        significant(here / MM, 3)
     )
 }
 

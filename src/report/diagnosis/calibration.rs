@@ -17,9 +17,11 @@ use self::written::destination;
 pub use self::written::{announced, applied};
 use super::subject::{Errors, LawNote, LawSubject, Subject};
 use super::{json as whole_json, report as whole_report};
-use crate::diagnosis::calibration::{CalibrationDiagnosis, GearError, law_destination, remark};
+use crate::calibration::Warning;
+use crate::diagnosis::calibration::{
+    CalibrationDiagnosis, CalibrationModel, GearError, law_destination, remark,
+};
 use crate::inference::{Finding, ForwardModel, Plan, PosePlan};
-use crate::report::calibration::warnings as of_calibration;
 use crate::report::{Block, Report};
 use crate::robot::Motion;
 use crate::units::{DEG, MM};
@@ -88,7 +90,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
             files: ["robot", "measurements"],
         }),
         remainder: remainder(found),
-        warnings: of_calibration(campaign, &model.calibration).into_iter().chain(worse).collect(),
+        warnings: warnings(found).chain(worse).collect(),
         head: vec![
             ("robot", json!(campaign.robot.name)),
             ("campaign", json!(campaign.file)),
@@ -120,6 +122,14 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
         consequences: None,
         count: campaign.measurements.len(),
     }
+}
+
+/// Of the files and of the calibration, without what the first lines say themselves.
+fn warnings(found: &CalibrationDiagnosis) -> impl Iterator<Item = String> {
+    let CalibrationModel { campaign, calibration, validated, .. } = &found.model;
+    let is_said = |own: &&Warning| validated.is_some() && matches!(own, Warning::ValidationFar { .. });
+    let of_files = campaign.warnings.iter().map(ToString::to_string);
+    of_files.chain(calibration.warnings.iter().filter(move |own| !is_said(own)).map(ToString::to_string))
 }
 
 /// A gear's shape takes several terms.

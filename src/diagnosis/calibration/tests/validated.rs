@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::calibration::campaign::{Recording, Refit};
-use crate::calibration::validate;
+use crate::calibration::{Warning, validate};
 use crate::diagnosis::calibration::Validated;
 use crate::units::MM;
 
@@ -108,4 +108,17 @@ fn a_validation_with_another_tool_or_from_elsewhere_is_said() {
     let shift = Vector3::new(5.0, -3.0, 2.0) * MM;
     points(recording).iter_mut().zip(&again.tips).for_each(|(point, tip)| *point = tip + shift);
     assert_eq!(events(&campaign), ["another place of tracker or base"]);
+}
+
+/// Who only calibrates is warned.
+#[test]
+fn a_calibration_warns_of_a_validation_that_is_far_off() {
+    let is_warned = |campaign: &Campaign| {
+        let calibration = calibrate(campaign, Mode::Fea, &Options::default()).unwrap();
+        calibration.warnings.iter().any(|warning| matches!(warning, Warning::ValidationFar { .. }))
+    };
+    let mut campaign = recorded(&clamps(12), &|_| Vector3::zeros(), 18.0 * UM, 3);
+    assert!(!is_warned(&campaign));
+    points(campaign.validation.as_mut().unwrap()).rotate_left(1);
+    assert!(is_warned(&campaign));
 }

@@ -276,7 +276,7 @@ fn a_compliance_that_follows_the_angle_is_no_error_of_the_gear() {
     let campaign = clamps(30);
     let calibration = calibrate(&campaign, Mode::Fea, &Options::default()).unwrap();
     let context = Context::new(&campaign, &calibration).unwrap();
-    for (cycles, seed) in [(2.0, 0), (2.0, 1), (12.0, 0), (5.0, 1)] {
+    for (cycles, seed) in [(2.0, 1), (12.0, 0)] {
         let turned = |row: usize| {
             let there = &context.configurations[row];
             (1, 1e-6 * there.torque[1] * (cycles * there.joints[1] + 0.4).sin())

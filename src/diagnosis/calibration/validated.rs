@@ -1,5 +1,6 @@
 //! What findings are worth at the validation of a campaign, of which no search has seen anything.
 
+mod moved_zero;
 mod own;
 
 use self::own::own_diagnosis;

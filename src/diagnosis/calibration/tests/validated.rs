@@ -122,3 +122,17 @@ fn a_calibration_warns_of_a_validation_that_is_far_off() {
     points(campaign.validation.as_mut().unwrap()).rotate_left(1);
     assert!(is_warned(&campaign));
 }
+
+/// A joint that was mounted again after the calibration.
+#[test]
+fn a_zero_that_moved_before_the_validation_is_measured() {
+    let moved = validated(&|recording| {
+        recording.joint_values.iter_mut().skip(2).step_by(6).for_each(|q| *q += 0.3f64.to_radians());
+    });
+    let own = moved.own.clone().expect("it is far off");
+    let [event] = &own.events[..] else { panic!("{:?}", own.events) };
+    // the interval is about a thousandth of a degree
+    assert!(event.starts_with("the zero of joint 3, which moved by -0.30"), "{event}");
+    assert!(event.contains(" ± 0.001"), "{event}");
+    assert!(own.explain(moved.expected), "{}", own.mean());
+}

@@ -5,18 +5,19 @@
 
 use nalgebra::Vector3;
 
+use super::moved_zero::{CURED, MovedZero, moved_zero};
 use crate::calibration::campaign::{Campaign, ParameterConstraints, Recording, Refit, Targets};
-use crate::calibration::{Calibration, Mode, Options, Summary, Validation, Warning, validate};
-use crate::diagnosis::calibration::OwnDiagnosis;
-use crate::diagnosis::calibration::{CalibrationDiagnosis, Neighbours, mend};
+use crate::calibration::{Calibration, Estimated, Mode, Options, Summary, Validation, Warning, validate};
+use crate::diagnosis::calibration::{CalibrationDiagnosis, Neighbours, OwnDiagnosis, mend};
 use crate::error::Result;
 use crate::inference::{Discrepancy, Finding, Location, WrittenTo};
+use crate::robot::Parameter;
 use crate::spatial::Pose;
+use crate::statistics::Estimate;
+use crate::units::DEG;
 
 /// Without it the error is so many times smaller, or it is not what makes the error.
 const HELPS: f64 = 1.2;
-/// So many times smaller an error becomes by another place, where that is what was wrong.
-const CURED: f64 = 3.0;
 /// So many rivals of a cause are said.
 const RIVALS_SAID: usize = 2;
 
@@ -29,7 +30,15 @@ pub fn own_diagnosis(campaign: &Campaign, calibration: &Calibration) -> Result<O
     let Some(recording) = &campaign.validation else { return Ok(None) };
     let before = validate(&calibration.setup, recording, campaign.refit)?;
     let (placed, elsewhere) = placed(campaign, calibration, recording, &before)?;
-    let Some(own) = of_validation(campaign, calibration, placed.placement) else { return Ok(None) };
+    let zero = moved_zero(&calibration.setup, recording, placed.refit, &placed)?;
+    let (calibration, placed) = match &zero {
+        None => (calibration.clone(), placed),
+        Some(MovedZero { setup, .. }) => (
+            Calibration { setup: setup.clone(), ..calibration.clone() },
+            validate(setup, recording, placed.refit)?,
+        ),
+    };
+    let Some(own) = of_validation(campaign, &calibration, placed.placement) else { return Ok(None) };
     let (none, options) = (Neighbours::default(), Options::default());
     let Ok(mended) = mend(&own, Mode::None, &none, &options) else { return Ok(None) };
     let Ok(found) = mended.diagnose() else { return Ok(None) };
@@ -46,12 +55,23 @@ pub fn own_diagnosis(campaign: &Campaign, calibration: &Calibration) -> Result<O
         events.0.push(format!("an unexplained error, which {follows}"));
         moved.iter_mut().zip(found.model.by_row(&left.shape)).for_each(|(sum, own)| *sum += own);
     }
-    events.0.splice(0..0, elsewhere.map(str::to_owned));
-    let errors = errors_without(&mended.campaign.measurements, &moved, calibration, placed.refit)?;
+    let zero = zero.map(|zero| cause_of_zero(&zero, &calibration));
+    events.0.splice(0..0, elsewhere.map(str::to_owned).into_iter().chain(zero));
+    let errors = errors_without(&mended.campaign.measurements, &moved, &calibration, placed.refit)?;
     let is_less = before.summary.mean > HELPS * Summary::of(&errors).mean;
     let (events, errors) = if is_less { (events.0, errors) } else { (Vec::new(), before.errors) };
     let scatter = found.diagnosis.noise;
     Ok(Some(OwnDiagnosis { events, errors, of_robot, unexplained, scatter }))
+}
+
+/// From where the calibration has it, as well as that is known.
+fn cause_of_zero(zero: &MovedZero, calibration: &Calibration) -> String {
+    let is_it = |own: &&Estimated| own.parameter == Parameter::Theta(zero.joint);
+    let known = calibration.parameters.iter().find(is_it).and_then(|own| own.std_error);
+    let dof = calibration.fit.degrees_of_freedom;
+    let known = Estimate { value: 0.0, std_error: known.or(Some(0.0)), dof };
+    let by = Estimate::sum(&[zero.by, known]).show(DEG);
+    format!("the zero of joint {}, which moved by {by}°", zero.joint + 1)
 }
 
 /// The validation with base and tool fitted again, and in words why, where the calibrated robot

@@ -57,6 +57,13 @@ impl Sandbox {
         Sandbox(tempfile::tempdir().unwrap())
     }
 
+    /// Another one with the same files.
+    fn copied(&self) -> Self {
+        let sandbox = Sandbox::empty();
+        copy(self.path(), sandbox.path());
+        sandbox
+    }
+
     fn path(&self) -> &Path {
         self.0.path()
     }

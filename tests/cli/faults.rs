@@ -54,6 +54,8 @@ fn prepared(line: &str) -> Sandbox {
     sandbox.write("poses.csv", "pose,q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n1,0,10,80,5,6,7\n");
     sandbox.run("compliance rods/5.toml --out old").succeeded();
     sandbox.run("compliance rods/2.toml --out older").succeeded();
+    // what is written counts here, and not of how many poses
+    sandbox.run("simulate small --rod rods/5.toml --poses 7 --validation 4").succeeded();
     if line.contains("sealed") {
         sandbox.run("trial make sealed --seed 3 --cases 1 --rig").succeeded();
     }
@@ -73,14 +75,14 @@ const WRITING: [(&str, &[usize]); 15] = [
     ("design rod design.toml --resume kept --out designs", &[1, 2, 4, 9, 42]),
     ("trial make t --seed 3 --cases 1 --rig", &[1, 2, 6, 32]),
     ("rig fit rods/5.toml stiffness_data/5.csv --out old", &[1, 4, 21]),
-    ("calibrate campaigns/tx90-5/campaign.toml --out old", &[2, 22]),
+    ("calibrate small/campaign.toml --out old", &[2, 22]),
     ("predict robots/tx90.toml poses.csv --out new/tips", &[1, 2, 8]),
     ("design rig rods/5.toml --r-rod-width-percent 1 --out old", &[3, 11]),
     ("design poses campaigns/tx90-5/campaign.toml --count 20 --generate 60 --out old", &[2, 12]),
     ("diagnose rig rods/5.toml stiffness_data/5.csv --apply --out old", &[5, 27]),
     ("compare-runs old older --out runs", &[1, 9]),
-    ("compare campaigns/tx90-5/campaign.toml --draws 50 --out old", &[1, 14]),
-    ("diagnose calibration campaigns/tx90-5/campaign.toml --apply --out old", &[3, 19]),
+    ("compare small/campaign.toml --draws 50 --out old", &[1, 14]),
+    ("diagnose calibration small/campaign.toml --apply --out old", &[3, 19]),
     ("trial answer sealed", &[1, 2]),
     ("trial score sealed --out old", &[2, 13]),
 ];
@@ -111,8 +113,8 @@ fn struck(line: &str, counts: &[usize]) {
     let all: Vec<usize> = step.map_or_else(Vec::new, |step| (1..200).step_by(step.max(1)).collect());
     let counts = if step.is_some() { &all } else { counts };
     let words: Vec<&str> = line.split_whitespace().collect();
-    let whole = prepared(line);
-    let old = whole.listing();
+    let first = prepared(line);
+    let (whole, old) = (first.copied(), first.listing());
     whole.run(line).succeeded();
     let new = whole.listing();
     let mut unstruck = 0;
@@ -127,7 +129,7 @@ fn struck(line: &str, counts: &[usize]) {
         if step.is_some() && unstruck >= BEHIND {
             continue;
         }
-        let sandbox = prepared(line);
+        let sandbox = first.copied();
         let fault = format!("{kind} {count}");
         let output = sandbox.command(&words).env("RODCAL_FAULT", &fault).output().unwrap();
         let (status, mut after) = (output.status.code(), sandbox.listing());

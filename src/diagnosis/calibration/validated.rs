@@ -1,6 +1,6 @@
 //! What findings are worth at the validation of a campaign, of which no search has seen anything.
 
-mod moved_zero;
+mod one_number;
 mod own;
 
 use self::own::own_diagnosis;
@@ -30,7 +30,7 @@ use crate::inference::{Finding, Kind, WrittenTo};
 /// ```
 ///
 /// # Errors
-/// As [`calibrate`] and [`validate`](crate::calibration::validate).
+/// As [`validate`](crate::calibration::validate).
 pub fn look_at_validation(found: &mut CalibrationDiagnosis) -> Result<()> {
     found.model.validated = validated(found)?;
     Ok(())
@@ -44,10 +44,10 @@ fn validated(found: &CalibrationDiagnosis) -> Result<Option<Validated>> {
     }
     let Some(before) = errors(calibration) else { return Ok(None) };
     let extended = Extended::of(found);
+    // one that cannot be calibrated is worth nothing there
     let again = extended
         .as_ref()
-        .map(|extended| calibrate(&extended.campaign, calibration.mode, &Options::default()))
-        .transpose()?;
+        .and_then(|own| calibrate(&own.campaign, calibration.mode, &Options::default()).ok());
     let after = again.as_ref().and_then(errors);
     let (expected, is_held_out) = expected(found);
     let mut validated = Validated { before, after, expected, is_held_out, own: None };

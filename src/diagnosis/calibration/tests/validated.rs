@@ -123,6 +123,16 @@ fn a_calibration_warns_of_a_validation_that_is_far_off() {
     assert!(is_warned(&campaign));
 }
 
+/// A device whose scale is another one.
+#[test]
+fn a_scale_of_the_validation_alone_is_measured() {
+    let scaled = validated(&|recording| points(recording).iter_mut().for_each(|point| *point *= 1.002));
+    let own = scaled.own.clone().expect("it is far off");
+    let [event] = &own.events[..] else { panic!("{:?}", own.events) };
+    assert!(event.starts_with("positions that are 1.0020") && event.contains(" ± 0.0000"), "{event}");
+    assert!(own.explain(scaled.expected), "{}", own.mean());
+}
+
 /// A joint that was mounted again after the calibration.
 #[test]
 fn a_zero_that_moved_before_the_validation_is_measured() {

@@ -5,16 +5,13 @@
 
 use nalgebra::Vector3;
 
-use super::moved_zero::{CURED, MovedZero, moved_zero};
+use super::one_number::{CURED, changed};
 use crate::calibration::campaign::{Campaign, ParameterConstraints, Recording, Refit, Targets};
-use crate::calibration::{Calibration, Estimated, Mode, Options, Summary, Validation, Warning, validate};
+use crate::calibration::{Calibration, Mode, Options, Summary, Validation, Warning, validate};
 use crate::diagnosis::calibration::{CalibrationDiagnosis, Neighbours, OwnDiagnosis, mend};
 use crate::error::Result;
 use crate::inference::{Discrepancy, Finding, Location, WrittenTo};
-use crate::robot::Parameter;
 use crate::spatial::Pose;
-use crate::statistics::Estimate;
-use crate::units::DEG;
 
 /// Without it the error is so many times smaller, or it is not what makes the error.
 const HELPS: f64 = 1.2;
@@ -30,48 +27,38 @@ pub fn own_diagnosis(campaign: &Campaign, calibration: &Calibration) -> Result<O
     let Some(recording) = &campaign.validation else { return Ok(None) };
     let before = validate(&calibration.setup, recording, campaign.refit)?;
     let (placed, elsewhere) = placed(campaign, calibration, recording, &before)?;
-    let zero = moved_zero(&calibration.setup, recording, placed.refit, &placed)?;
-    let (calibration, placed) = match &zero {
-        None => (calibration.clone(), placed),
-        Some(MovedZero { setup, .. }) => (
-            Calibration { setup: setup.clone(), ..calibration.clone() },
-            validate(setup, recording, placed.refit)?,
-        ),
-    };
-    let Some(own) = of_validation(campaign, &calibration, placed.placement) else { return Ok(None) };
+    let changed = changed(&calibration.setup, recording, placed.refit, &placed)?;
+    let mut events: Vec<String> = elsewhere.map(str::to_owned).into_iter().collect();
+    let (mut calibration, mut placed, mut own) = (calibration.clone(), placed, campaign.clone());
+    if let Some(changed) = changed {
+        events.push(changed.cause(&calibration));
+        placed = validate(&changed.setup, &changed.recording, placed.refit)?;
+        calibration.setup = changed.setup;
+        own.validation = Some(changed.recording);
+    }
+    let Some(own) = of_validation(own, &calibration, placed.placement) else { return Ok(None) };
     let (none, options) = (Neighbours::default(), Options::default());
     let Ok(mended) = mend(&own, Mode::None, &none, &options) else { return Ok(None) };
     let Ok(found) = mended.diagnose() else { return Ok(None) };
     // what would belong to the robot is an error of the calibrated one
     let is_of_robot = |own: &&Finding| own.written_to == WrittenTo::Model && own.is_of_model();
-    let (of_robot, events): (Vec<_>, Vec<_>) = found.diagnosis.findings.iter().partition(is_of_robot);
-    let (of_robot, mut events) = (causes(&of_robot), (causes(&events), events));
-    let mut moved = displacement(&found, &events.1);
+    let (of_robot, of_poses): (Vec<_>, Vec<_>) = found.diagnosis.findings.iter().partition(is_of_robot);
+    events.extend(of_poses.iter().map(|finding| cause(finding)));
+    let mut moved = displacement(&found, &of_poses);
     let mut unexplained = unexplained(&found);
     // nor does what follows the time alone belong to it
     if let Some(left) = found.diagnosis.discrepancy.as_ref().filter(|left| is_of_time(left))
         && let Some(follows) = unexplained.take()
     {
-        events.0.push(format!("an unexplained error, which {follows}"));
+        events.push(format!("an unexplained error, which {follows}"));
         moved.iter_mut().zip(found.model.by_row(&left.shape)).for_each(|(sum, own)| *sum += own);
     }
-    let zero = zero.map(|zero| cause_of_zero(&zero, &calibration));
-    events.0.splice(0..0, elsewhere.map(str::to_owned).into_iter().chain(zero));
     let errors = errors_without(&mended.campaign.measurements, &moved, &calibration, placed.refit)?;
     let is_less = before.summary.mean > HELPS * Summary::of(&errors).mean;
-    let (events, errors) = if is_less { (events.0, errors) } else { (Vec::new(), before.errors) };
+    let (events, errors) = if is_less { (events, errors) } else { (Vec::new(), before.errors) };
+    let of_robot = of_robot.iter().map(|finding| cause(finding)).collect();
     let scatter = found.diagnosis.noise;
     Ok(Some(OwnDiagnosis { events, errors, of_robot, unexplained, scatter }))
-}
-
-/// From where the calibration has it, as well as that is known.
-fn cause_of_zero(zero: &MovedZero, calibration: &Calibration) -> String {
-    let is_it = |own: &&Estimated| own.parameter == Parameter::Theta(zero.joint);
-    let known = calibration.parameters.iter().find(is_it).and_then(|own| own.std_error);
-    let dof = calibration.fit.degrees_of_freedom;
-    let known = Estimate { value: 0.0, std_error: known.or(Some(0.0)), dof };
-    let by = Estimate::sum(&[zero.by, known]).show(DEG);
-    format!("the zero of joint {}, which moved by {by}°", zero.joint + 1)
 }
 
 /// The validation with base and tool fitted again, and in words why, where the calibrated robot
@@ -108,10 +95,6 @@ fn unexplained(found: &CalibrationDiagnosis) -> Option<String> {
 
 fn is_of_time(left: &Discrepancy) -> bool {
     matches!(&left.location, Some(Location::Curve { along: Some(along), .. }) if along.is_of_time())
-}
-
-fn causes(findings: &[&Finding]) -> Vec<String> {
-    findings.iter().map(|finding| cause(finding)).collect()
 }
 
 /// A finding with what the poses cannot distinguish from it, in words.
@@ -155,11 +138,10 @@ fn errors_without(
 /// The validation's poses as a recording of the calibrated robot: without rod and clamps, and with
 /// its numbers as uncertain as the calibration has left them.
 fn of_validation(
-    campaign: &Campaign,
+    mut own: Campaign,
     calibration: &Calibration,
     placement: Option<(Pose, Vector3<f64>)>,
 ) -> Option<Campaign> {
-    let mut own = campaign.clone();
     own.measurements = own.validation.take()?;
     own.robot = calibration.setup.calibrated();
     (own.rod, own.readings, own.contact_force, own.clamps) = (None, None, None, Vec::new());

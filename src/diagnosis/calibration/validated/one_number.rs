@@ -8,7 +8,7 @@ use crate::robot::{Motion, Parameter, Setup};
 use crate::statistics::Estimate;
 use crate::units::DEG;
 
-/// So many times smaller an error becomes by another number, or another place, where that was wrong.
+/// So many times smaller an error becomes by another number or place, where that was wrong.
 pub const CURED: f64 = 3.0;
 /// A zero that moved farther is a mistake in the file rather, rad.
 const LARGEST_TURN: f64 = 5.0 * DEG;

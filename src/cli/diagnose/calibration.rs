@@ -44,8 +44,11 @@ Effects that these poses cannot distinguish, or cannot show, are listed. What
 no effect explains is described, not named. The order of the rows is the order
 of recording; columns time_s and temperature_c make more effects testable.
 
-Exit status: 0 the calibration explains the poses; 1 it does not, and the first
-line says why; 2 could not run."
+Poses of a validation are searched for nothing. Where they are far off, they are
+diagnosed by themselves.
+
+Exit status: 0 the calibration explains the poses; 1 it does not, or its
+validation contradicts it, and the first line says why; 2 could not run."
     )
 }
 

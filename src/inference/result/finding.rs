@@ -256,6 +256,17 @@ impl Finding {
         others
     }
 
+    /// All that these data cannot distinguish from it, in words: what has no name first, then other
+    /// effects, likeliest first.
+    pub fn other_causes(&self) -> Vec<String> {
+        let unnamed = self.unnamed.as_ref().and_then(|rival| match &rival.location {
+            Location::Curve { follows, .. } => Some(format!("another cause that {follows}")),
+            _ => None,
+        });
+        let effects = self.other_effects().into_iter();
+        unnamed.into_iter().chain(effects.map(|(effect, place)| (effect.cause_at)(&place))).collect()
+    }
+
     /// The estimate of its place, where that is a number that was fitted: where it is, and between
     /// which ends.
     pub fn place_estimate(&self) -> Option<&Estimate> {

@@ -50,7 +50,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
     let campaign = model.campaign;
     let distances = Distances::of(found);
     let (before, after) = (mean(&distances.before), mean(&distances.after));
-    let elsewhere = validated::sentence(found);
+    let elsewhere = validated::elsewhere(found);
     let worse = distances.validated.as_ref().and_then(validated::warning);
     let held_out =
         vec![Block::Table(distances.table()), Block::Figure(figures::distribution(found, &distances))];

@@ -1,7 +1,7 @@
 //! What a reader in a hurry takes away from a diagnosis.
 
-use super::headline::{RIVALS_SAID, cause_at, is_scatter_estimated, other_causes, um};
-use super::subject::Subject;
+use super::headline::{RIVALS_SAID, cause_at, is_scatter_estimated, um};
+use super::subject::{Elsewhere, Subject};
 use crate::inference::{Finding, Kind};
 use crate::report::{Card, Tone};
 
@@ -9,6 +9,7 @@ use crate::report::{Card, Tone};
 pub fn cards(subject: &Subject) -> Vec<Card> {
     let mut cards = vec![answer(subject), errors(subject)];
     cards.extend(subject.diagnosis.findings.first().map(|finding| sure(subject, finding)));
+    cards.extend(subject.elsewhere.as_ref().map(elsewhere));
     cards.push(left(subject));
     cards
 }
@@ -61,7 +62,7 @@ fn errors(subject: &Subject) -> Card {
 
 /// How sure the strongest finding is.
 fn sure(subject: &Subject, finding: &Finding) -> Card {
-    let others = other_causes(finding);
+    let others = finding.other_causes();
     let folds = finding.found_in_folds.map(|(some, all)| format!("in {some} of {all} searches"));
     if others.is_empty() {
         let found = match folds {
@@ -76,6 +77,11 @@ fn sure(subject: &Subject, finding: &Finding) -> Card {
     };
     let said = others[..others.len().min(RIVALS_SAID)].join(" or ");
     Card::new("How sure", value, format!("it may as well be {said}")).toned(Tone::Attention)
+}
+
+fn elsewhere(own: &Elsewhere) -> Card {
+    let tone = if own.is_far { Tone::Attention } else { Tone::Good };
+    Card::new("Validation error", own.value.clone(), own.detail.clone()).toned(tone)
 }
 
 fn left(subject: &Subject) -> Card {

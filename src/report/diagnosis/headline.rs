@@ -35,8 +35,16 @@ pub fn headline(subject: &Subject) -> String {
         true => format!("{} {}", Limitation::NotConverged, answer(subject)),
         false => answer(subject),
     };
-    let own = [subject.uneven.as_ref().map(|own| &own.words), subject.elsewhere.as_ref()];
-    let words = own.into_iter().flatten().fold(words, |words, more| format!("{words} {more}"));
+    let words = match &subject.uneven {
+        Some(uneven) => format!("{words} {}", uneven.words),
+        None => words,
+    };
+    let words = match &subject.elsewhere {
+        // why they do not agree is said first
+        Some(own) if own.is_mismatch && !subject.diagnosis.is_mismatch() => format!("{} {words}", own.words),
+        Some(own) => format!("{words} {}", own.words),
+        None => words,
+    };
     match &subject.doubtful {
         Some(doubtful) => format!("{doubtful} {words}"),
         None => words,
@@ -329,7 +337,7 @@ fn only_in_part(subject: &Subject, it: &str, (before, after): (f64, f64)) -> Str
 /// A finding with what these data cannot distinguish from it.
 pub fn sentence(subject: &Subject, finding: &Finding) -> String {
     let description = &finding.description;
-    let mut said = other_causes(finding);
+    let mut said = finding.other_causes();
     if said.is_empty() {
         return format!("{description}.");
     }
@@ -345,17 +353,6 @@ pub fn sentence(subject: &Subject, finding: &Finding) -> String {
         }
         _ => format!("{description}, or {said}; these {noun} cannot distinguish them."),
     }
-}
-
-/// All that these data cannot distinguish from a finding: what has no name first, then other
-/// effects, the likeliest first.
-pub fn other_causes(finding: &Finding) -> Vec<String> {
-    let unnamed = finding.unnamed.as_ref().and_then(|rival| match &rival.location {
-        Location::Curve { follows, .. } => Some(format!("another cause that {follows}")),
-        _ => None,
-    });
-    let effects = finding.other_effects();
-    unnamed.into_iter().chain(effects.iter().map(|(effect, place)| (effect.cause_at)(place))).collect()
 }
 
 /// Which other clamp, socket, joint or part it may be: the first sentence names none as if it were
@@ -437,9 +434,9 @@ mod tests {
         let curve = Location::Curve { label: "load".into(), follows, along: None };
         let at = Location::Named("clamp 2".into());
         let mut finding = Finding::without_terms(&UNKNOWN, at, Vec::new(), Description::default());
-        assert!(other_causes(&finding).is_empty());
+        assert!(finding.other_causes().is_empty());
         finding.unnamed = Some(Rival::without_term(&UNKNOWN, curve, 1.0));
-        assert_eq!(other_causes(&finding), ["another cause that follows the load"]);
+        assert_eq!(finding.other_causes(), ["another cause that follows the load"]);
     }
 
     #[test]

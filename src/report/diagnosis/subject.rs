@@ -42,8 +42,8 @@ pub struct Subject<'a> {
     pub nominal: Option<String>,
     /// Sensors that scatter otherwise than the others do.
     pub uneven: Option<Uneven>,
-    /// What the findings are worth for data that no search has seen, in a sentence.
-    pub elsewhere: Option<String>,
+    /// What the findings are worth for data that no search has seen.
+    pub elsewhere: Option<Elsewhere>,
     /// A suspect datum as JSON: its row or pose, its channel.
     pub suspect: Box<dyn Fn(usize) -> Value + 'a>,
     /// What no effect explains.
@@ -81,7 +81,8 @@ pub struct Subject<'a> {
 impl Subject<'_> {
     /// True where nothing is left out of the model, as far as it could be seen.
     pub fn is_consistent(&self) -> bool {
-        !self.diagnosis.is_mismatch() && !self.limits.contains(&Limitation::NotConverged)
+        let is_contradicted = self.elsewhere.as_ref().is_some_and(|own| own.is_mismatch);
+        !self.diagnosis.is_mismatch() && !self.limits.contains(&Limitation::NotConverged) && !is_contradicted
     }
 
     /// Its own warnings, and the limits of the search.
@@ -89,6 +90,20 @@ impl Subject<'_> {
         let limits = self.limits.iter().map(ToString::to_string);
         self.warnings.iter().cloned().chain(limits).collect()
     }
+}
+
+/// Data that no search has seen.
+pub struct Elsewhere {
+    /// In a sentence.
+    pub words: String,
+    /// Their error, without and with what was found.
+    pub value: String,
+    /// What else is known of it, in a few words.
+    pub detail: String,
+    /// True where it is far from what is expected.
+    pub is_far: bool,
+    /// True where that is a mismatch, whatever the other data say.
+    pub is_mismatch: bool,
 }
 
 /// Sensors that scatter otherwise than the others do.

@@ -4,6 +4,8 @@
 const WORSE: f64 = 1.1;
 /// So many times the error that is expected is far from it.
 const FAR: f64 = 2.0;
+/// And so many times contradicts it, however the device may scatter.
+const CONTRADICTS: f64 = 10.0;
 
 /// Errors of a validation's poses.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,7 +30,10 @@ pub struct Validated {
 pub struct OwnDiagnosis {
     /// What belongs to its poses and not to the robot, in words: `a shift (front/0, after row 2)`.
     pub events: Vec<String>,
-    /// Errors without that, m, one per pose; as they are where there is nothing of the kind.
+    /// The joint, from 0, in the order of whose angles the poses were recorded: an error of the
+    /// robot that follows it looks like what happened between them.
+    pub in_order_of: Option<usize>,
+    /// Errors without its events, m, one per pose; as they are where there is nothing of the kind.
     pub errors: Vec<f64>,
     /// What would belong to the robot, in words: `a transmission error (joint 3)`.
     pub of_robot: Vec<String>,
@@ -48,6 +53,17 @@ impl Validated {
     /// True where what was found makes the robot worse at these poses.
     pub fn is_worse(&self) -> bool {
         matches!(self.means(), (before, Some(after)) if after > WORSE * before)
+    }
+
+    /// True where the poses contradict what the recording leads to expect: something is named or
+    /// seen, or the error is larger than any device that measures less accurately makes it.
+    pub fn is_mismatch(&self) -> bool {
+        let (before, after) = self.means();
+        let is_larger = after.unwrap_or(before) > CONTRADICTS * self.expected;
+        let is_seen = |own: &OwnDiagnosis| {
+            !own.events.is_empty() || !own.of_robot.is_empty() || own.unexplained.is_some()
+        };
+        self.is_far() && (is_larger || self.own.as_ref().is_some_and(is_seen))
     }
 
     /// True where the error is far from what the recording leads to expect.

@@ -31,6 +31,7 @@ fn what_happened_in_the_validation_is_no_error_of_the_robot() {
     assert!(knocked.is_far(), "{knocked:?}");
     let own = knocked.own.clone().expect("something happened");
     assert_eq!(own.events, [format!("a shift of the base (after pose {})", knocked.before.len() / 2)]);
+    assert!(own.in_order_of.is_none() && knocked.is_mismatch());
     assert!(own.explain(knocked.expected) && own.mean() < 100.0 * UM, "{}", own.mean());
 }
 
@@ -80,7 +81,7 @@ fn a_mistake_in_the_validation_alone_is_named() {
 #[test]
 fn a_validation_that_agrees_is_not_diagnosed() {
     let clean = validated(&|_| {});
-    assert!(!clean.is_far() && clean.own.is_none() && clean.after.is_none());
+    assert!(!clean.is_far() && !clean.is_mismatch() && clean.own.is_none() && clean.after.is_none());
     assert_eq!(clean.means(), (clean.before.iter().sum::<f64>() / clean.before.len() as f64, None));
 }
 
@@ -131,6 +132,42 @@ fn a_scale_of_the_validation_alone_is_measured() {
     let [event] = &own.events[..] else { panic!("{:?}", own.events) };
     assert!(event.starts_with("positions that are 1.0020") && event.contains(" ± 0.0000"), "{event}");
     assert!(own.explain(scaled.expected), "{}", own.mean());
+}
+
+/// Angles of a joint in another scale.
+#[test]
+fn a_scale_of_an_encoder_in_the_validation_alone_is_measured() {
+    let scaled = validated(&|recording| {
+        recording.joint_values.iter_mut().skip(2).step_by(6).for_each(|q| *q *= 1.01);
+    });
+    let own = scaled.own.clone().expect("it is far off");
+    let [event] = &own.events[..] else { panic!("{:?}", own.events) };
+    assert!(event.starts_with("angles of joint 3 that are 1.0") && event.contains(" ± 0.0000"), "{event}");
+    assert!(own.explain(scaled.expected), "{}", own.mean());
+}
+
+/// Poses in the order of an angle: a step of the robot's there looks like a base that moved.
+#[test]
+fn what_happened_cannot_be_distinguished_from_what_follows_the_order_of_the_poses() {
+    let step = |is_sorted: bool| {
+        validated(&|recording| {
+            let mut order: Vec<usize> = (0..recording.len()).collect();
+            order.sort_by(|a, b| recording.joints(*a)[1].total_cmp(&recording.joints(*b)[1]));
+            let beyond = order[2 * order.len() / 3..].to_vec();
+            points(recording).iter_mut().enumerate().for_each(|(row, point)| {
+                point.z += if beyond.contains(&row) { 1.5 * MM } else { 0.0 };
+            });
+            if is_sorted {
+                *recording = recording.subset(&order);
+            }
+        })
+    };
+    let own = step(true).own.expect("it is far off");
+    assert!(own.events[0].contains("after pose"), "{:?}", own.events);
+    assert_eq!(own.in_order_of, Some(1));
+    // in any other order it is the robot's
+    let own = step(false).own.expect("it is far off");
+    assert!(own.events.is_empty() && own.in_order_of.is_none(), "{own:?}");
 }
 
 /// A joint that was mounted again after the calibration.

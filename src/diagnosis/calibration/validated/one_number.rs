@@ -1,5 +1,6 @@
 //! A single number that was another one while the validation was recorded: the zero of a joint, as
-//! after a collision or where an encoder was mounted again; the scale of the measuring device.
+//! after a collision or where an encoder was mounted again; the scale of its encoder, or of the
+//! measuring device.
 
 use crate::calibration::campaign::{Recording, Refit, Targets};
 use crate::calibration::{Calibration, Estimated, Validation, validate};
@@ -24,6 +25,8 @@ const STEPS: usize = 4;
 enum Number {
     /// The zero of a joint, from 0, rad.
     Zero(usize),
+    /// The scale of a joint's angles, from 0, less 1.
+    Encoder(usize),
     /// The scale of measured positions, less 1.
     Scale,
 }
@@ -51,7 +54,7 @@ pub fn changed<'r>(
 ) -> Result<Option<Changed<'r>>> {
     let joints = setup.robot.joints.iter().enumerate();
     let turning = joints.filter(|(_, joint)| joint.motion == Motion::Revolute);
-    let numbers = turning.map(|(joint, _)| Number::Zero(joint));
+    let numbers = turning.flat_map(|(joint, _)| [Number::Zero(joint), Number::Encoder(joint)]);
     let has_points = matches!(recording.targets, Targets::Points(_));
     let taken = match (has_points, refit) {
         (false, _) => 3 * recording.groups.len(),
@@ -78,7 +81,7 @@ impl Number {
     fn largest(self) -> f64 {
         match self {
             Number::Zero(_) => LARGEST_TURN,
-            Number::Scale => LARGEST_SCALE,
+            Number::Encoder(_) | Number::Scale => LARGEST_SCALE,
         }
     }
 
@@ -89,6 +92,10 @@ impl Number {
             (Number::Zero(joint), _) => {
                 let theta = Parameter::Theta(joint);
                 setup.set(theta, setup.get(theta) + by);
+            }
+            (Number::Encoder(joint), _) => {
+                let (skipped, step) = (joint, recording.joint_count);
+                recording.joint_values.iter_mut().skip(skipped).step_by(step).for_each(|q| *q /= 1.0 + by);
             }
             (Number::Scale, Targets::Points(points)) => {
                 points.iter_mut().for_each(|point| *point /= 1.0 + by);
@@ -110,6 +117,10 @@ impl Changed<'_> {
                 let known = Estimate { value: 0.0, std_error: known.or(Some(0.0)), dof };
                 let by = Estimate::sum(&[self.by, known]).show(DEG);
                 format!("the zero of joint {}, which moved by {by}°", joint + 1)
+            }
+            Number::Encoder(joint) => {
+                let scale = Estimate { value: 1.0 + self.by.value, ..self.by }.show(1.0);
+                format!("angles of joint {} that are {scale} times as large as they should be", joint + 1)
             }
             Number::Scale => {
                 let scale = Estimate { value: 1.0 + self.by.value, ..self.by }.show(1.0);

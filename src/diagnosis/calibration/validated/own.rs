@@ -5,6 +5,7 @@
 
 use nalgebra::Vector3;
 
+use super::in_order::in_order_of;
 use super::one_number::{CURED, changed};
 use crate::calibration::campaign::{Campaign, ParameterConstraints, Recording, Refit, Targets};
 use crate::calibration::{Calibration, Mode, Options, Summary, Validation, Warning, validate};
@@ -46,11 +47,14 @@ pub fn own_diagnosis(campaign: &Campaign, calibration: &Calibration) -> Result<O
     events.extend(of_poses.iter().map(|finding| cause(finding)));
     let mut moved = displacement(&found, &of_poses);
     let mut unexplained = unexplained(&found);
+    let moved_before = found.happened().into_iter().filter(|own| own.stays).map(|own| own.row);
+    let mut splits: Vec<usize> = moved_before.collect();
     // nor does what follows the time alone belong to it
     if let Some(left) = found.diagnosis.discrepancy.as_ref().filter(|left| is_of_time(left))
         && let Some(follows) = unexplained.take()
     {
         events.push(format!("an unexplained error, which {follows}"));
+        splits.push(recording.len() / 2);
         moved.iter_mut().zip(found.model.by_row(&left.shape)).for_each(|(sum, own)| *sum += own);
     }
     let errors = errors_without(&mended.campaign.measurements, &moved, &calibration, placed.refit)?;
@@ -58,7 +62,9 @@ pub fn own_diagnosis(campaign: &Campaign, calibration: &Calibration) -> Result<O
     let (events, errors) = if is_less { (events, errors) } else { (Vec::new(), before.errors) };
     let of_robot = of_robot.iter().map(|finding| cause(finding)).collect();
     let scatter = found.diagnosis.noise;
-    Ok(Some(OwnDiagnosis { events, errors, of_robot, unexplained, scatter }))
+    let in_order_of = splits.into_iter().find_map(|row| in_order_of(recording, row));
+    let in_order_of = in_order_of.filter(|_| !events.is_empty());
+    Ok(Some(OwnDiagnosis { events, in_order_of, errors, of_robot, unexplained, scatter }))
 }
 
 /// The validation with base and tool fitted again, and in words why, where the calibrated robot
@@ -99,11 +105,14 @@ fn is_of_time(left: &Discrepancy) -> bool {
 
 /// A finding with what the poses cannot distinguish from it, in words.
 fn cause(finding: &Finding) -> String {
-    let others = finding.other_effects().into_iter().take(RIVALS_SAID);
-    let others = others.map(|(effect, place)| (effect.cause_at)(&place));
-    let all: Vec<String> =
-        std::iter::once((finding.effect.cause_at)(&finding.location)).chain(others).collect();
-    all.join(", or ")
+    let own = (finding.effect.cause_at)(&finding.location);
+    let mut said = finding.other_causes();
+    said.truncate(RIVALS_SAID);
+    // elsewhere too, as signs of other axes beside one
+    if finding.others().len() > said.len() {
+        said.push("others".into());
+    }
+    std::iter::once(own).chain(said).collect::<Vec<_>>().join(", or ")
 }
 
 /// What findings do to each row, m.

@@ -4,11 +4,25 @@ use crate::diagnosis::Limitation;
 use crate::diagnosis::calibration::{CalibrationDiagnosis, Validated};
 use crate::inference::Finding;
 use crate::report::diagnosis::headline::{from_to, size};
+use crate::report::diagnosis::subject::Elsewhere;
 use crate::units::significant;
+
+/// What a report says of the validation; `None` where there is none, or nothing to say.
+pub fn elsewhere(found: &CalibrationDiagnosis) -> Option<Elsewhere> {
+    let (validated, words) = (found.model.validated.as_ref()?, sentence(found)?);
+    let (before, after) = validated.means();
+    let own = validated.own.as_ref().filter(|own| !own.events.is_empty());
+    let detail = match own {
+        Some(own) => format!("{} without errors of their own", size(own.mean())),
+        None => "of poses that no search has seen".to_owned(),
+    };
+    let value = after.map_or_else(|| size(before), |after| format!("{} → {}", size(before), size(after)));
+    Some(Elsewhere { words, value, detail, is_far: validated.is_far(), is_mismatch: validated.is_mismatch() })
+}
 
 /// `At the 62 validation poses, which no search has seen, the error falls from 403 to 290 µm on
 /// average.`
-pub fn sentence(found: &CalibrationDiagnosis) -> Option<String> {
+fn sentence(found: &CalibrationDiagnosis) -> Option<String> {
     let is_fitted = !found.limits.contains(&Limitation::NotConverged);
     let validated = found.model.validated.as_ref().filter(|_| is_fitted)?;
     let (before, after) = validated.means();
@@ -50,8 +64,15 @@ fn far(validated: &Validated) -> String {
     let events = match own.events.is_empty() {
         true => String::new(),
         false => {
-            let (events, left) = (own.events.join("; "), size(own.mean()));
-            format!(". They show errors of their own: {events}. Without these the error is {left}")
+            let (mut events, left) = (own.events.join("; "), size(own.mean()));
+            if let Some(joint) = own.in_order_of {
+                let joint = joint + 1;
+                events += &format!(
+                    "; or an error of the robot that follows joint {joint}, in the order of which they were recorded"
+                );
+            }
+            let perhaps = if own.explain(expected) { "" } else { " perhaps" };
+            format!(". They show{perhaps} errors of their own: {events}. Without these the error is {left}")
         }
     };
     if own.explain(expected) {
@@ -64,7 +85,8 @@ fn far(validated: &Validated) -> String {
         (true, None) => {
             let scatter = size(own.scatter);
             return format!(
-                "{times}{events}. They scatter by {scatter} per coordinate and follow nothing, as poses do that are measured less accurately"
+                "{times}{events}. They scatter by {scatter} per coordinate and follow nothing that was recorded: they were measured less \
+                 accurately, or the robot is wrong there in a way that so few poses do not show"
             );
         }
     };
@@ -117,6 +139,7 @@ mod tests {
                            of_robot: &[&str],
                            unexplained: Option<&str>| {
                 let own = causes.map(|(event, left)| OwnDiagnosis {
+                    in_order_of: event.contains("base").then_some(1),
                     events: if event.is_empty() { Vec::new() } else { vec![event.into()] },
                     errors: um(left),
                     of_robot: of_robot.iter().map(ToString::to_string).collect(),
@@ -169,7 +192,11 @@ mod tests {
             let mut far = |event: &str, left: f64, of_robot: &[&str], unexplained: Option<&str>| {
                 all(403.0, Some(252.0), Some((event, left)), of_robot, unexplained).0
             };
-            let events = ". They show errors of their own: a shift. Without these the error is 200 µm";
+            let events =
+                ". They show perhaps errors of their own: a shift. Without these the error is 200 µm";
+            let sorted = ". They show errors of their own: a base; or an error of the robot that follows joint 2, in the order of which \
+                          they were recorded. Without these the error is 158 µm.";
+            assert_eq!(far("a base", 158.0, &[], None), moved(sorted));
             let slow = Some("follows the order");
             for (said, rest) in [
                 (far("a shift", 200.0, &["play (joint 3)"], slow), format!("{events}; here the robot shows play (joint 3).")),
@@ -180,12 +207,45 @@ mod tests {
                 ),
                 (
                     far("", 252.0, &[], None),
-                    ". They scatter by 35 µm per coordinate and follow nothing, as poses do that are measured less accurately."
+                    ". They scatter by 35 µm per coordinate and follow nothing that was recorded: they were measured less \
+                     accurately, or the robot is wrong there in a way that so few poses do not show."
                         .into(),
                 ),
             ] {
                 assert_eq!(said, moved(&rest));
             }
+        });
+    }
+
+    /// Poses that are explained, and a validation that is not.
+    #[test]
+    fn a_validation_that_contradicts_the_poses_is_a_mismatch_and_said_first() {
+        with_diagnosed(&|_| Vector3::zeros(), |_, found| {
+            assert_eq!(json(found)["verdict"], "consistent");
+            let mut found = found.clone();
+            let mut verdict = |before: f64, events: &[&str]| {
+                let own = OwnDiagnosis {
+                    events: events.iter().map(ToString::to_string).collect(),
+                    in_order_of: None,
+                    errors: um(before),
+                    of_robot: Vec::new(),
+                    unexplained: None,
+                    scatter: before * UM,
+                };
+                let (before, expected) = (um(before), 30.0 * UM);
+                let validated =
+                    Validated { before, after: None, expected, is_held_out: true, own: Some(own) };
+                found.model.validated = Some(validated);
+                let (json, cards) = (json(&found), report(&found).cards);
+                let card = cards.into_iter().find(|card| card.label == "Validation error").unwrap();
+                let is_first = json["headline"].as_str().unwrap().starts_with("At the 2 validation poses");
+                (json["verdict"].as_str().unwrap().to_owned(), is_first, card.value)
+            };
+            let mismatch = |value: &str| ("mismatch".to_owned(), true, value.to_owned());
+            assert_eq!(verdict(100.0, &["a shift"]), mismatch("100 µm"));
+            assert_eq!(verdict(900.0, &[]), mismatch("900 µm"));
+            // a device that measures less accurately
+            assert_eq!(verdict(100.0, &[]), ("consistent".to_owned(), false, "100 µm".to_owned()));
         });
     }
 }

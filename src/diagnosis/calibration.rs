@@ -28,6 +28,7 @@
 mod diagnose;
 pub mod effects;
 mod evidence;
+mod in_order;
 mod laws;
 mod mistakes;
 mod model;

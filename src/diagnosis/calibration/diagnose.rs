@@ -27,6 +27,7 @@ use self::tails::{Tailed, tailed};
 use super::effects::contact::is_of_clamps;
 use super::effects::gear::gear_joint;
 use super::effects::{EVERY_ROW, registry};
+use super::in_order::with_what_follows_the_order;
 use super::laws::sites::sites;
 use super::model::CalibrationModel;
 use super::model::gear::Curve;
@@ -162,6 +163,7 @@ pub fn diagnose_calibrated<'c>(
         finding.next = next;
     }
     with_rivals(&mut diagnosis, rivals);
+    with_what_follows_the_order(&model, &evidence, &mut diagnosis);
     let law = one_law.or_else(|| propose(&model, &diagnosis, &|change| sites(&context, change.len())));
     let mut limits = limits(&context, &model.calibration, &evidence);
     limits.extend(look.scatter.iter().flat_map(|noise| noisy(campaign, noise)));

@@ -11,6 +11,7 @@ mod descriptions;
 mod evidence;
 mod finding;
 mod happened;
+mod in_order;
 mod laws;
 mod level;
 mod load_change;

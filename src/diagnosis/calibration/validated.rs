@@ -1,6 +1,5 @@
 //! What findings are worth at the validation of a campaign, of which no search has seen anything.
 
-mod in_order;
 mod one_number;
 mod own;
 

@@ -30,9 +30,6 @@ pub struct Validated {
 pub struct OwnDiagnosis {
     /// What belongs to its poses and not to the robot, in words: `a shift (front/0, after row 2)`.
     pub events: Vec<String>,
-    /// The joint, from 0, in the order of whose angles the poses were recorded: an error of the
-    /// robot that follows it looks like what happened between them.
-    pub in_order_of: Option<usize>,
     /// Errors without its events, m, one per pose; as they are where there is nothing of the kind.
     pub errors: Vec<f64>,
     /// What would belong to the robot, in words: `a transmission error (joint 3)`.

@@ -31,7 +31,7 @@ fn what_happened_in_the_validation_is_no_error_of_the_robot() {
     assert!(knocked.is_far(), "{knocked:?}");
     let own = knocked.own.clone().expect("something happened");
     assert_eq!(own.events, [format!("a shift of the base (after pose {})", knocked.before.len() / 2)]);
-    assert!(own.in_order_of.is_none() && knocked.is_mismatch());
+    assert!(knocked.is_mismatch());
     assert!(own.explain(knocked.expected) && own.mean() < 100.0 * UM, "{}", own.mean());
 }
 
@@ -163,11 +163,11 @@ fn what_happened_cannot_be_distinguished_from_what_follows_the_order_of_the_pose
         })
     };
     let own = step(true).own.expect("it is far off");
-    assert!(own.events[0].contains("after pose"), "{:?}", own.events);
-    assert_eq!(own.in_order_of, Some(1));
+    let either = "or another cause that follows the angle of joint 2, in the order of which";
+    assert!(own.events[0].contains("after pose") && own.events[0].contains(either), "{:?}", own.events);
     // in any other order it is the robot's
     let own = step(false).own.expect("it is far off");
-    assert!(own.events.is_empty() && own.in_order_of.is_none(), "{own:?}");
+    assert!(own.events.is_empty(), "{own:?}");
 }
 
 /// A joint that was mounted again after the calibration.

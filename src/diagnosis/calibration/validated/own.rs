@@ -5,7 +5,6 @@
 
 use nalgebra::Vector3;
 
-use super::in_order::in_order_of;
 use super::one_number::{CURED, changed};
 use crate::calibration::campaign::{Campaign, ParameterConstraints, Recording, Refit, Targets};
 use crate::calibration::{Calibration, Mode, Options, Summary, Validation, Warning, validate};
@@ -47,14 +46,11 @@ pub fn own_diagnosis(campaign: &Campaign, calibration: &Calibration) -> Result<O
     events.extend(of_poses.iter().map(|finding| cause(finding)));
     let mut moved = displacement(&found, &of_poses);
     let mut unexplained = unexplained(&found);
-    let moved_before = found.happened().into_iter().filter(|own| own.stays).map(|own| own.row);
-    let mut splits: Vec<usize> = moved_before.collect();
     // nor does what follows the time alone belong to it
     if let Some(left) = found.diagnosis.discrepancy.as_ref().filter(|left| is_of_time(left))
-        && let Some(follows) = unexplained.take()
+        && let Some(of_time) = unexplained.take()
     {
-        events.push(format!("an unexplained error, which {follows}"));
-        splits.push(recording.len() / 2);
+        events.push(format!("an unexplained error, which {of_time}"));
         moved.iter_mut().zip(found.model.by_row(&left.shape)).for_each(|(sum, own)| *sum += own);
     }
     let errors = errors_without(&mended.campaign.measurements, &moved, &calibration, placed.refit)?;
@@ -62,9 +58,7 @@ pub fn own_diagnosis(campaign: &Campaign, calibration: &Calibration) -> Result<O
     let (events, errors) = if is_less { (events, errors) } else { (Vec::new(), before.errors) };
     let of_robot = of_robot.iter().map(|finding| cause(finding)).collect();
     let scatter = found.diagnosis.noise;
-    let in_order_of = splits.into_iter().find_map(|row| in_order_of(recording, row));
-    let in_order_of = in_order_of.filter(|_| !events.is_empty());
-    Ok(Some(OwnDiagnosis { events, in_order_of, errors, of_robot, unexplained, scatter }))
+    Ok(Some(OwnDiagnosis { events, errors, of_robot, unexplained, scatter }))
 }
 
 /// The validation with base and tool fitted again, and in words why, where the calibrated robot

@@ -64,13 +64,7 @@ fn far(validated: &Validated) -> String {
     let events = match own.events.is_empty() {
         true => String::new(),
         false => {
-            let (mut events, left) = (own.events.join("; "), size(own.mean()));
-            if let Some(joint) = own.in_order_of {
-                let joint = joint + 1;
-                events += &format!(
-                    "; or an error of the robot that follows joint {joint}, in the order of which they were recorded"
-                );
-            }
+            let (events, left) = (own.events.join("; "), size(own.mean()));
             let perhaps = if own.explain(expected) { "" } else { " perhaps" };
             format!(". They show{perhaps} errors of their own: {events}. Without these the error is {left}")
         }
@@ -139,7 +133,6 @@ mod tests {
                            of_robot: &[&str],
                            unexplained: Option<&str>| {
                 let own = causes.map(|(event, left)| OwnDiagnosis {
-                    in_order_of: event.contains("base").then_some(1),
                     events: if event.is_empty() { Vec::new() } else { vec![event.into()] },
                     errors: um(left),
                     of_robot: of_robot.iter().map(ToString::to_string).collect(),
@@ -194,9 +187,6 @@ mod tests {
             };
             let events =
                 ". They show perhaps errors of their own: a shift. Without these the error is 200 µm";
-            let sorted = ". They show errors of their own: a base; or an error of the robot that follows joint 2, in the order of which \
-                          they were recorded. Without these the error is 158 µm.";
-            assert_eq!(far("a base", 158.0, &[], None), moved(sorted));
             let slow = Some("follows the order");
             for (said, rest) in [
                 (far("a shift", 200.0, &["play (joint 3)"], slow), format!("{events}; here the robot shows play (joint 3).")),
@@ -226,7 +216,6 @@ mod tests {
             let mut verdict = |before: f64, events: &[&str]| {
                 let own = OwnDiagnosis {
                     events: events.iter().map(ToString::to_string).collect(),
-                    in_order_of: None,
                     errors: um(before),
                     of_robot: Vec::new(),
                     unexplained: None,

@@ -1,0 +1,165 @@
+//! Poses that were recorded in the order of an angle, or of a coordinate of their places: what
+//! happened between them, or drifted, and what the robot does there look alike.
+
+use super::model::CalibrationModel;
+use crate::inference::{
+    Diagnosis, Discrepancy, Evidence, Finding, JointVariable, Location, Plan, PlannedPose, PosePlan,
+    Proposal, Rival, UNKNOWN, Variable, separates,
+};
+
+/// Fewer poses on one side lie beyond the others by chance.
+const FEWEST: usize = 4;
+/// So large a share of the pairs of an earlier and a later pose have their angles in one order.
+const IN_ORDER: f64 = 0.95;
+/// Of an error that follows the angle in the order of which the poses were recorded.
+const OR_THE_ORDER: &str = ", or the order of the poses, which is that of this angle";
+/// So many poses are enough to see what happened come back.
+const AGAIN: usize = 8;
+
+/// Gives findings that happened between poses, or changed with the time, what else they may be
+/// where the poses were recorded in the order of something else, and the poses that distinguish
+/// the two. Of what has no name it is said that it may follow the one or the other.
+pub(super) fn with_what_follows_the_order(
+    model: &CalibrationModel,
+    evidence: &Evidence,
+    diagnosis: &mut Diagnosis,
+) {
+    let sigma = diagnosis.hypothesis.sigma;
+    for finding in diagnosis.findings.iter_mut().filter(|finding| finding.unnamed.is_none()) {
+        let Some(course) = course(model, evidence, finding) else { continue };
+        let Some(variable) = recorded_along(evidence, &course) else { continue };
+        let rival = Rival::without_term(&UNKNOWN, curve(variable), 1.0);
+        finding.parts[0].unnamed = Some(rival.clone());
+        finding.unnamed = Some(rival);
+        if finding.next.is_none() {
+            finding.next = once_more(model, finding, &course, variable, sigma);
+        }
+    }
+    if let Some(Discrepancy { location: Some(Location::Curve { follows, along: Some(along), .. }), .. }) =
+        &mut diagnosis.discrepancy
+    {
+        let order: Vec<f64> = (0..model.campaign.measurements.len()).map(|row| row as f64).collect();
+        match recorded_along(evidence, &order) {
+            Some(variable) if along.is_of_time() => *follows += &format!(", or {}", self::follows(variable)),
+            Some(variable) if variable == *along => *follows += OR_THE_ORDER,
+            _ => {}
+        }
+    }
+}
+
+/// The angle, or the coordinate of the tip, by which the poses with a smaller `course` (one per
+/// row; NaN does not count) differ from those with a larger one: nearly all pairs of such two lie
+/// one way. Of a step their share is U/mn (H. B. Mann, D. R. Whitney, *Ann. Math. Stat.* 18 (1947)
+/// 50–60), of what passes evenly (τ + 1)/2 (M. G. Kendall, *Biometrika* 30 (1938) 81–93).
+pub(super) fn recorded_along(evidence: &Evidence, course: &[f64]) -> Option<Variable> {
+    let counted = || (0..course.len()).filter(|row| !course[*row].is_nan());
+    let pairs =
+        || counted().flat_map(|a| counted().map(move |b| (a, b))).filter(|&(a, b)| course[a] < course[b]);
+    let (low, high) = counted().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), row| {
+        (low.min(course[row]), high.max(course[row]))
+    });
+    let on_side = |is_there: &dyn Fn(f64) -> bool| counted().filter(|row| is_there(course[*row])).count();
+    if on_side(&|at| at < high).min(on_side(&|at| at > low)) < FEWEST {
+        return None;
+    }
+    // at one clamp or socket the tip stays where it is, but for what moved it
+    let is_everywhere = counted().count() == course.len();
+    let is_place = |variable: Variable| match variable {
+        Variable::Joint(_, JointVariable::Angle) => true,
+        Variable::Tip(_) => is_everywhere,
+        _ => false,
+    };
+    let shares = evidence.covariates.iter().filter(|own| is_place(own.variable)).map(|own| {
+        let value = |row: usize| own.values[3 * row];
+        let (mut rising, mut all) = (0.0, 0.0);
+        for (a, b) in pairs() {
+            all += 1.0;
+            // equal ones lie no way
+            rising += if value(a) < value(b) { 1.0 } else { f64::from(value(a) == value(b)) / 2.0 };
+        }
+        let share = rising / f64::max(all, 1.0);
+        (own.variable, share.max(1.0 - share))
+    });
+    let most = shares.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (most.1 > IN_ORDER).then_some(most.0)
+}
+
+/// What follows `variable`, for people.
+fn follows(variable: Variable) -> String {
+    let what = match variable {
+        Variable::Joint(joint, _) => format!("the angle of joint {}", joint + 1),
+        Variable::Tip(axis) => format!("{axis} of the tip"),
+        other => other.to_string(),
+    };
+    format!("follows {what}, in the order of which the poses were recorded")
+}
+
+fn curve(variable: Variable) -> Location {
+    Location::Curve { label: variable.to_string(), follows: follows(variable), along: Some(variable) }
+}
+
+/// What a finding follows as the time goes by, one number per row: whether it happened before, or
+/// the number that it changes with. NaN at clamps and sockets that it does not concern; nothing of
+/// what has nothing to do with the time.
+fn course(model: &CalibrationModel, evidence: &Evidence, finding: &Finding) -> Option<Vec<f64>> {
+    let part = finding.parts.first()?;
+    let rows = &model.campaign.measurements.rows;
+    if let Some(last) = part.location.moved_after() {
+        let moved = model.by_row(&model.response_of(finding));
+        let mut groups: Vec<usize> =
+            (0..rows.len()).filter(|row| moved[*row].norm() > 0.0).map(|row| rows[row].group).collect();
+        groups.dedup();
+        let is_of_one = matches!(part.location, Location::Shift { what: Some(_), .. }) && groups.len() == 1;
+        let counts = |row: usize| !is_of_one || rows[row].group == groups[0];
+        let step = |row: usize| if counts(row) { f64::from(row > last) } else { f64::NAN };
+        return Some((0..rows.len()).map(step).collect());
+    }
+    let along = (finding.effect.seen_along)(&part.location);
+    if along.is_empty() || !along.iter().all(|variable| variable.is_of_time()) {
+        return None;
+    }
+    let known = |variable: Variable| evidence.covariates.iter().find(|own| own.variable == variable);
+    let passed = along.into_iter().chain([Variable::Order]).find_map(known)?;
+    Some((0..rows.len()).map(|row| passed.values[3 * row]).collect())
+}
+
+/// Some of the first poses after the last: what has happened by then is seen there too, what follows
+/// the angle is not.
+fn once_more(
+    model: &CalibrationModel,
+    finding: &Finding,
+    course: &[f64],
+    variable: Variable,
+    sigma: f64,
+) -> Option<Proposal> {
+    let recording = &model.campaign.measurements;
+    let mut early: Vec<usize> = (0..course.len()).filter(|row| !course[*row].is_nan()).collect();
+    early.truncate(match finding.location.moved_after() {
+        Some(last) => early.iter().filter(|row| **row <= last).count(),
+        None => early.len() / 2,
+    });
+    let some: Vec<usize> = early.iter().copied().step_by(early.len().div_ceil(AGAIN).max(1)).collect();
+    // ½·‖change‖²/σ², and the change between early and late poses is at least what it explains of all
+    let log_odds = 3.0 * some.len() as f64 * finding.explains.powi(2) / (2.0 * sigma.powi(2));
+    if !separates(log_odds) {
+        return None;
+    }
+    let pose = |row: &usize| recording.rows[*row].pose.as_str();
+    let is_unique = |row: &usize| recording.rows.iter().filter(|other| other.pose == pose(row)).count() == 1;
+    let names: Vec<String> = match some.iter().all(is_unique) {
+        true => some.iter().map(|row| pose(row).to_owned()).collect(),
+        false => some.iter().map(|row| recording.pose_name(*row)).collect(),
+    };
+    let planned = |row: &usize| PlannedPose {
+        joints: recording.joints(*row).to_vec(),
+        group: recording.rows[*row].group,
+        like: *row,
+    };
+    let plan = PosePlan { poses: some.iter().map(planned).collect(), new_fixture: None };
+    Some(Proposal {
+        description: format!("Measure poses {} once more, after the last one.", names.join(", ")),
+        plan: Some(Plan::Poses(plan)),
+        log_odds,
+        separates_from: vec![(&UNKNOWN, curve(variable))],
+    })
+}

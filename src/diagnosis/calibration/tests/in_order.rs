@@ -1,0 +1,74 @@
+//! What happened between poses that were recorded in the order of an angle.
+
+use super::*;
+use crate::diagnosis::calibration::in_order::recorded_along;
+use crate::inference::{Covariate, Finding, JointVariable, Plan, Variable};
+
+const ANGLE: JointVariable = JointVariable::Angle;
+
+/// A recording of 100 poses by a tracker, whose first joint turns by so much more from half of the
+/// poses on; in the order of its angles, or in that in which they were chosen.
+fn slipped(is_sorted: bool) -> Finding {
+    let mut campaign = recorded(&clamps(12), &|_| Vector3::zeros(), 18.0 * UM, 3);
+    let mut own = campaign.validation.take().unwrap();
+    if is_sorted {
+        let mut order: Vec<usize> = (0..own.len()).collect();
+        order.sort_by(|a, b| own.joints(*a)[0].total_cmp(&own.joints(*b)[0]));
+        own = own.subset(&order);
+    }
+    let (half, count) = (own.len() / 2, own.joint_count);
+    own.joint_values.chunks_exact_mut(count).skip(half).for_each(|q| q[0] += 600e-6);
+    (campaign.measurements, campaign.rod, campaign.clamps) = (own, None, Vec::new());
+    let found = diagnose_as_recorded(&campaign, Mode::None, &Options::default()).unwrap();
+    let [finding] = &found.diagnosis.findings[..] else { panic!("{:?}", found.diagnosis.findings) };
+    finding.clone()
+}
+
+#[test]
+fn a_slip_in_poses_sorted_by_an_angle_may_as_well_follow_the_angle() {
+    let sorted = slipped(true);
+    assert_eq!(sorted.effect.name, "joint_shift");
+    let said = sorted.other_causes();
+    let expected =
+        "another cause that follows the angle of joint 1, in the order of which the poses were recorded";
+    assert_eq!(said, [expected]);
+    // first poses, measured again after the last one, distinguish the two
+    let next = sorted.next.expect("a measurement");
+    let Some(Plan::Poses(plan)) = &next.plan else { panic!("{next:?}") };
+    let last = sorted.location.moved_after().unwrap();
+    assert!(plan.poses.len() > 4 && plan.poses.iter().all(|pose| pose.like <= last), "{plan:?}");
+    assert!(next.description.ends_with("once more, after the last one."), "{}", next.description);
+    let unsorted = slipped(false);
+    assert_eq!(unsorted.effect.name, "joint_shift");
+    assert!(unsorted.unnamed.is_none(), "{:?}", unsorted.unnamed);
+}
+
+#[test]
+fn the_order_is_that_of_the_angle_by_which_earlier_poses_differ_from_later_ones() {
+    let rows: usize = 24;
+    let each = |value: &dyn Fn(usize) -> f64| (0..3 * rows).map(|datum| value(datum / 3)).collect::<Vec<_>>();
+    let mut evidence = Evidence::new(DVector::zeros(3 * rows));
+    let alternating = |row: usize| (row % 2) as f64;
+    // two blocks, within each of which it goes to and fro; and a height that falls all the time
+    let in_blocks = |row: usize| (row / 12) as f64 + 0.1 * alternating(row);
+    let falling = |row: usize| -(row as f64);
+    evidence.covariates = vec![
+        Covariate { variable: Variable::Joint(0, ANGLE), values: each(&alternating) },
+        Covariate { variable: Variable::Joint(1, ANGLE), values: each(&in_blocks) },
+        Covariate { variable: Variable::Joint(2, JointVariable::Torque), values: each(&falling) },
+    ];
+    let step = |from: usize| (0..rows).map(|row| f64::from(row >= from)).collect::<Vec<f64>>();
+    let order: Vec<f64> = (0..rows).map(|row| row as f64).collect();
+    assert_eq!(recorded_along(&evidence, &step(12)), Some(Variable::Joint(1, ANGLE)));
+    // within a block, by three poses alone, and evenly in time, nothing is in order
+    for course in [&step(6), &step(21), &order] {
+        assert_eq!(recorded_along(&evidence, course), None);
+    }
+    let height = Variable::Tip(crate::spatial::Axis::Z);
+    evidence.covariates.push(Covariate { variable: height, values: each(&falling) });
+    assert_eq!(recorded_along(&evidence, &order), Some(height));
+    // at one clamp the tip stays where it is
+    let at_one: Vec<f64> =
+        step(6).into_iter().enumerate().map(|(k, at)| if k < 12 { at } else { f64::NAN }).collect();
+    assert_eq!(recorded_along(&evidence, &at_one), None);
+}

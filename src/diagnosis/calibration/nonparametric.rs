@@ -12,6 +12,7 @@
 //! of a joint's reversal it turns by Σ a_k·cos(π k x) one way, by as much the other way when it
 //!                       came from there, or is loaded the other way; or by as much as it is
 //!                       loaded, k > 0: a drive that gives way more at some angles than at others
+//! of a base             it turns by Σ a_k·cos(π k x) about any axis, x the order, time or temperature
 //! of two joints         both turn by Σ a_kl·cos(π k x)·cos(π l y): what neither does as a function
 //!                       of its own angle; or any other joint does
 //! of a link             all beyond a joint turns about any axis of its link by products of two
@@ -65,8 +66,9 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
     ];
     for (variable, name, values) in clocks {
         let label = variable.to_string();
-        let curve = |values: Vec<f64>| along(context, variable, &label, name, &values, Frame::World);
-        entries.extend(values.and_then(curve));
+        let Some(values) = values else { continue };
+        entries.extend(along(context, variable, &label, name, &values, Frame::World));
+        entries.extend(turning(context, variable, &label, name, &values));
     }
     for j in 0..context.joint_count() {
         let values: Vec<f64> = context.configurations.iter().map(|there| there.joints[j]).collect();
@@ -129,6 +131,29 @@ fn along(
     };
     let follows = format!("follows {name}, along {directions}");
     Some(curve(label, follows, Some(variable), parameters.collect()))
+}
+
+/// A base that turns by itself, or the tracker that sees it: what several slips of the base describe
+/// roughly.
+///
+/// Σ_k (a_k + b_k × (ball − base))·cos(π k x)
+fn turning(context: &Context, variable: Variable, label: &str, name: &str, values: &[f64]) -> Option<Entry> {
+    let x = scaled(values)?;
+    let lever = context.largest(|there| (there.tip - there.origin[0]).norm());
+    let parameters = (1..=MOST).flat_map(|k| {
+        let size = SIZE / (1 + k) as f64;
+        let moved = vectors(context, &format!("cosine_{k}"), size, Frame::World, &|row| cosine(k, x[row]));
+        let about = |axis: usize| {
+            let column = context.column(|row, there| {
+                Vector3::ith(axis, cosine(k, x[row])).cross(&(there.tip - there.origin[0]))
+            });
+            (linear(format!("about_{}_cosine_{k}_urad", AXES[axis]), size / lever), column)
+        };
+        moved.into_iter().chain((0..3).map(about)).collect::<Vec<_>>()
+    });
+    let label = format!("{label}, a curve of the base that turns");
+    let follows = format!("follows {name}, as a base that turns");
+    (lever > 0.0).then(|| curve(label, follows, Some(variable), parameters.collect()))
 }
 
 /// A joint whose zero goes its own way while the poses are recorded: a drive that warms up by its

@@ -30,6 +30,8 @@ const LEAST_LINK: f64 = 20.0 * MM;
 const TRACKER: f64 = 3.0;
 /// How often it is the scale of a tracker that grows, over how often a base drifts.
 const SCALE_GROWS: f64 = 0.35;
+/// How often a base turns too, over how often it drifts along fixed directions.
+const TURNS: f64 = 0.35;
 /// Time constants of a robot that warms up, as parts of the recording.
 const WARMING: [f64; 4] = [0.03, 0.1, 0.2, 0.4];
 
@@ -105,17 +107,20 @@ pub static THERMAL_DRIFT: CalibrationEffect = CalibrationEffect {
         summary: "the arm drifts with temperature, time or order",
         formula: "d·(T − T̄), d·(t − t̄) or d·e^(−t/t₁), of the robot in {W} or of its tool in {T}; the same of \
                   a joint's zero, Jⱼ·d, or of the length of its link; d·(flange − base) where all links grow; \
-                  d + k·(ball − base) where the scale of a tracker grows, k of it and d = −k·(tracker − base)",
+                  d + φ × (ball − base) where the base turns; d + k·(ball − base) where the scale of a tracker grows, k of it and d = −k·(tracker − base)",
         prior: "10 µm/K (an arm of steel of 1 m grows by 12), but 50 µm at least over the recorded \
                 temperatures; 20 µm/h, as in a room that warms by \
                 2 K in an hour, or over a recording without a clock; 50 µm for a cold robot (a UR5 \
                 starts a recording some 60 µm off); of a joint as many µrad, of a link as many µm, of \
-                the arm as many µm/m; of a tracker the third of that (3 m away it is as much: air changes \
+                the arm as many µm/m, of a base that turns as many µrad, a third as often; of a tracker the third of that (3 m away it is as much: air changes \
                 its scale by 1 µm/m per kelvin, what a camera is made of by more)",
         parameters: &[
             (&["x_um_per_k", "y_um_per_k", "z_um_per_k"], "displacement per kelvin"),
             (&["x_um_per_h", "y_um_per_h", "z_um_per_h"], "displacement per hour"),
             (&["x_um", "y_um", "z_um"], "displacement over the recording, or of the cold robot"),
+            (&["rx_urad_per_k", "ry_urad_per_k", "rz_urad_per_k"], "rotation of the base per kelvin"),
+            (&["rx_urad_per_h", "ry_urad_per_h", "rz_urad_per_h"], "the same per hour"),
+            (&["rx_urad", "ry_urad", "rz_urad"], "the same over the recording, or of the cold robot"),
             (&["zero_urad_per_k", "zero_urad_per_h", "zero_urad"], "the same of a joint's zero"),
             (&["length_um_per_k", "length_um_per_h", "length_um"], "the same of a link's length"),
             (&["growth_um_per_m_per_k", "growth_um_per_m_per_h", "growth_um_per_m"], "growth of all links"),
@@ -163,6 +168,7 @@ fn drifts(context: &Context, lacks: &mut Vec<NotTestable>) -> Vec<Entry> {
             drifting(Frame::World, &|_, axis| unit(axis)),
             drifting(Frame::Tool, &|there, axis| there.flange.rotation.column(axis).into()),
             of_arm(context, course, &values),
+            of_base(context, course, &values),
         ];
         entries.extend(context.is_tracked().then(|| of_tracker(context, course, &values)));
         entries.extend(of_joints(context, course, &values));
@@ -178,6 +184,25 @@ fn of_arm(context: &Context, course: Course, values: &[f64]) -> Entry {
     let location = Location::Form { part: Part::Arm, form: Warmed::Arm.form(course) };
     let parameter = linear(format!("growth_{suffix}"), usual(course, values));
     single(&THERMAL_DRIFT, location, parameter, column).by(Law::Warms(course, Warmed::Arm))
+}
+
+/// A base that turns, as on a floor that gives way, or a tracker on a tripod that settles, which are
+/// the same: φ × (ball − base) + d. Where about it turns is d's.
+fn of_base(context: &Context, course: Course, values: &[f64]) -> Entry {
+    let size = usual(course, values);
+    let (angle, length) = (course.angle_unit().0, course.unit().0);
+    let names = |prefix: &str, unit: &str| ["x", "y", "z"].map(|axis| format!("{prefix}{axis}_{unit}"));
+    let about = |axis: usize| {
+        context.column(|row, there| unit(axis).cross(&(there.tip - there.origin[0])) * values[row])
+    };
+    let along = |axis: usize| context.column(|row, _| unit(axis) * values[row]);
+    let (turns, moves) = (names("r", angle), names("", length));
+    let mut six = three(&turns.each_ref().map(String::as_str), size, about);
+    six.extend(three(&moves.each_ref().map(String::as_str), size, along));
+    let location = Location::Form { part: Part::Base, form: Warmed::Turn.form(course) };
+    let mut entry = Entry::new(&THERMAL_DRIFT.effect, location, six).by(Law::Warms(course, Warmed::Turn));
+    entry.candidate.weight = TURNS;
+    entry
 }
 
 /// The scale of a tracker grows: k·(ball − tracker). Nobody knows where it stands, so −k·(tracker −
@@ -299,6 +324,10 @@ fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
         Law::Warms(course, Warmed::Tracker) => {
             let by = first(finding).with_unit(course.share_unit().1);
             format!("The scale of the tracker grows by {by} with {course}")
+        }
+        Law::Warms(course, Warmed::Turn) => {
+            let by = size.with_unit(course.angle_unit().1);
+            format!("The base turns against what measures it by {by} with {course}")
         }
         Law::Only
         | Law::Gear(_)

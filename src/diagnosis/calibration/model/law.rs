@@ -34,7 +34,7 @@ pub enum Law {
     Hung(Hung),
     /// Drift.
     Drift(Course, Frame),
-    /// Drift of a joint or its link, growth of the arm, or of what a tracker shows.
+    /// Drift of a joint or its link, growth of the arm, or of what a tracker shows; a base that turns.
     Warms(Course, Warmed),
     /// A clamp, a socket or the sockets of a plate that moved, by their numbers among the groups of
     /// the recording.
@@ -101,7 +101,7 @@ pub enum Frame {
     Tool,
 }
 
-/// What of a joint drifts, or of all of them, or of the tracker that sees them.
+/// What of a joint drifts, or of all of them, or of the tracker that sees them, or of the base.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Warmed {
@@ -113,6 +113,8 @@ pub enum Warmed {
     Arm,
     /// The scale of the tracker, which stands somewhere.
     Tracker,
+    /// How the base stands to what measures the tip.
+    Turn,
 }
 
 impl Law {
@@ -250,6 +252,7 @@ impl Warmed {
             Warmed::Zero => format!("zero, with {course}"),
             Warmed::Length => format!("length of its link, with {course}"),
             Warmed::Arm | Warmed::Tracker => format!("with {course}"),
+            Warmed::Turn => format!("turning, with {course}"),
         }
     }
 }

@@ -12,7 +12,6 @@
 //! of a joint's reversal it turns by Σ a_k·cos(π k x) one way, by as much the other way when it
 //!                       came from there, or is loaded the other way; or by as much as it is
 //!                       loaded, k > 0: a drive that gives way more at some angles than at others
-//! of a base             it turns by Σ a_k·cos(π k x) about any axis, x the order, time or temperature
 //! of two joints         both turn by Σ a_kl·cos(π k x)·cos(π l y): what neither does as a function
 //!                       of its own angle; or any other joint does
 //! of a link             all beyond a joint turns about any axis of its link by products of two
@@ -21,6 +20,7 @@
 //! of a clamp's sensors  `device.rs`
 //! of a loaded drive      `loaded.rs`
 //! of a loose tool, of a bearing that runs out   `loose.rs`
+//! of order, time or temperature: a base that turns, a joint's zero   `clocks.rs`
 //! of a torque or a scale, times a clock         `changing.rs`
 //! of the last moves     `moves.rs`
 //! of much finer detail  `waves.rs`
@@ -29,6 +29,7 @@
 //! for every shape is more likely to be smooth than not.
 
 mod changing;
+mod clocks;
 mod curve;
 mod device;
 mod loaded;
@@ -39,11 +40,10 @@ mod waves;
 use nalgebra::{Matrix3, Vector3};
 
 pub(super) use self::curve::SIDES;
-use self::curve::{AXES, LEAST_TORQUE, MOST, SIZE, TURN, angle_of, cosine, curve, scaled, vectors};
+use self::curve::{AXES, LEAST_TORQUE, SIZE, TURN, along, angle_of, cosine, curve, scaled, vectors};
 use super::model::Context;
 use super::model::entry::{Entry, linear};
 use super::model::law::Frame;
-use crate::inference::Variable;
 
 /// The same where a joint turns back: a tooth is worn over a part of a turn.
 const MOST_OF_REVERSAL: usize = 12;
@@ -55,21 +55,7 @@ const BY_ORIENTATION: &str = "follows how the tool is held";
 
 /// All of them for this recording.
 pub(super) fn all(context: &Context) -> Vec<Entry> {
-    let mut entries = Vec::new();
-    let rows = &context.recording.rows;
-    let known =
-        |number: &dyn Fn(usize) -> Option<f64>| (0..rows.len()).map(number).collect::<Option<Vec<f64>>>();
-    let clocks = [
-        (Variable::Order, "the order of the poses", known(&|row| Some(row as f64))),
-        (Variable::Time, "the time", known(&|row| rows[row].time)),
-        (Variable::Temperature, "the temperature", context.recording.temperatures()),
-    ];
-    for (variable, name, values) in clocks {
-        let label = variable.to_string();
-        let Some(values) = values else { continue };
-        entries.extend(along(context, variable, &label, name, &values, Frame::World));
-        entries.extend(turning(context, variable, &label, name, &values));
-    }
+    let mut entries = clocks::all(context);
     for j in 0..context.joint_count() {
         let values: Vec<f64> = context.configurations.iter().map(|there| there.joints[j]).collect();
         let label = format!("joint {}", j + 1);
@@ -78,10 +64,6 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
             entries.extend(along(context, angle_of(j), &label, &angle, &values, frame));
         }
     }
-    // the first joint turns as the base does, the last one as the tool
-    let inner =
-        context.revolute().into_iter().filter(|j| (1..context.joint_count().saturating_sub(1)).contains(j));
-    entries.extend(inner.filter_map(|j| zero(context, j)));
     entries.extend(waves::all(context));
     entries.extend(workspace(context));
     entries.extend((0..3).map(|axis| by_orientation(context, axis)));
@@ -110,68 +92,6 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
     entries.extend(changing::all(context));
     entries.extend(moves::all(context));
     entries
-}
-
-fn along(
-    context: &Context,
-    variable: Variable,
-    label: &str,
-    name: &str,
-    values: &[f64],
-    frame: Frame,
-) -> Option<Entry> {
-    let x = scaled(values)?;
-    let parameters = (1..=MOST).flat_map(|k| {
-        let size = SIZE / (1 + k) as f64;
-        vectors(context, &format!("cosine_{k}"), size, frame, &|row| cosine(k, x[row]))
-    });
-    let (label, directions) = match frame {
-        Frame::World => (format!("{label}, a curve in the world"), "fixed directions"),
-        Frame::Tool => (format!("{label}, a curve in the tool"), "directions that turn with the tool"),
-    };
-    let follows = format!("follows {name}, along {directions}");
-    Some(curve(label, follows, Some(variable), parameters.collect()))
-}
-
-/// A base that turns by itself, or the tracker that sees it: what several slips of the base describe
-/// roughly.
-///
-/// Σ_k (a_k + b_k × (ball − base))·cos(π k x)
-fn turning(context: &Context, variable: Variable, label: &str, name: &str, values: &[f64]) -> Option<Entry> {
-    let x = scaled(values)?;
-    let lever = context.largest(|there| (there.tip - there.origin[0]).norm());
-    let parameters = (1..=MOST).flat_map(|k| {
-        let size = SIZE / (1 + k) as f64;
-        let moved = vectors(context, &format!("cosine_{k}"), size, Frame::World, &|row| cosine(k, x[row]));
-        let about = |axis: usize| {
-            let column = context.column(|row, there| {
-                Vector3::ith(axis, cosine(k, x[row])).cross(&(there.tip - there.origin[0]))
-            });
-            (linear(format!("about_{}_cosine_{k}_urad", AXES[axis]), size / lever), column)
-        };
-        moved.into_iter().chain((0..3).map(about)).collect::<Vec<_>>()
-    });
-    let label = format!("{label}, a curve of the base that turns");
-    let follows = format!("follows {name}, as a base that turns");
-    (lever > 0.0).then(|| curve(label, follows, Some(variable), parameters.collect()))
-}
-
-/// A joint whose zero goes its own way while the poses are recorded: a drive that warms up by its
-/// own moves, which two slips of the joint describe roughly.
-///
-/// Σ_k a_k·cos(π k x)·Jⱼ        x the order of the poses, from 0 to 1
-fn zero(context: &Context, joint: usize) -> Option<Entry> {
-    let order: Vec<f64> = (0..context.configurations.len()).map(|row| row as f64).collect();
-    let x = scaled(&order)?;
-    let lever = context.largest(|there| there.tip_jacobian[joint].norm());
-    let of_order = |k: usize| {
-        let column = context.column(|row, there| there.tip_jacobian[joint] * cosine(k, x[row]));
-        (linear(format!("cosine_{k}_urad"), SIZE / ((1 + k) as f64 * lever)), column)
-    };
-    let label = format!("order, a curve of the zero of joint {}", joint + 1);
-    let follows = format!("follows the order of the poses, as the zero of joint {}", joint + 1);
-    let parameters = (1..=MOST).map(of_order).collect();
-    (lever > 0.0).then(|| curve(label, follows, Some(Variable::Order), parameters))
 }
 
 /// What depends on where the ball is. A socket's place is free, and takes all of that; where the

@@ -82,3 +82,27 @@ pub(super) fn vectors(
     };
     AXES.iter().enumerate().map(along).collect()
 }
+
+/// A vector in {W} or in {T} along one number of each row.
+///
+/// Σ_k a_k·cos(π k x)        x from 0 to 1
+pub(super) fn along(
+    context: &Context,
+    variable: Variable,
+    label: &str,
+    name: &str,
+    values: &[f64],
+    frame: Frame,
+) -> Option<Entry> {
+    let x = scaled(values)?;
+    let parameters = (1..=MOST).flat_map(|k| {
+        let size = SIZE / (1 + k) as f64;
+        vectors(context, &format!("cosine_{k}"), size, frame, &|row| cosine(k, x[row]))
+    });
+    let (label, directions) = match frame {
+        Frame::World => (format!("{label}, a curve in the world"), "fixed directions"),
+        Frame::Tool => (format!("{label}, a curve in the tool"), "directions that turn with the tool"),
+    };
+    let follows = format!("follows {name}, along {directions}");
+    Some(curve(label, follows, Some(variable), parameters.collect()))
+}

@@ -31,8 +31,9 @@ pub(super) fn with_what_follows_the_order(
         let rival = Rival::without_term(&UNKNOWN, curve(variable), 1.0);
         finding.parts[0].unnamed = Some(rival.clone());
         finding.unnamed = Some(rival);
-        if finding.next.is_none() {
-            finding.next = once_more(model, finding, &course, variable, sigma);
+        if finding.next.as_ref().is_none_or(|next| next.separates_from.is_empty()) {
+            let again = once_more(model, finding, &course, variable, sigma);
+            finding.next = again.or_else(|| finding.next.take());
         }
     }
     if let Some(Discrepancy { location: Some(Location::Curve { follows, along: Some(along), .. }), .. }) =
@@ -123,8 +124,8 @@ fn course(model: &CalibrationModel, evidence: &Evidence, finding: &Finding) -> O
     Some((0..rows.len()).map(|row| passed.values[3 * row]).collect())
 }
 
-/// Some of the first poses after the last: what has happened by then is seen there too, what follows
-/// the angle is not.
+/// Some of the first poses after the last: what has happened by then is seen there too, what
+/// follows the angle is not.
 fn once_more(
     model: &CalibrationModel,
     finding: &Finding,
@@ -139,7 +140,7 @@ fn once_more(
         None => early.len() / 2,
     });
     let some: Vec<usize> = early.iter().copied().step_by(early.len().div_ceil(AGAIN).max(1)).collect();
-    // ½·‖change‖²/σ², and the change between early and late poses is at least what it explains of all
+    // ½·‖change‖²/σ², and the change between early and late poses is no less than what it explains
     let log_odds = 3.0 * some.len() as f64 * finding.explains.powi(2) / (2.0 * sigma.powi(2));
     if !separates(log_odds) {
         return None;

@@ -38,7 +38,7 @@ use super::model::{Context, LinearTerms};
 use super::*;
 use crate::calibration::Calibration;
 use crate::calibration::Campaign;
-use crate::calibration::campaign::Targets;
+use crate::calibration::campaign::{Recording, Targets};
 use crate::calibration::simulate::{Plan, campaign_files, simulate};
 use crate::calibration::{Mode, Options, calibrate};
 use crate::compliance::{Compliance, DEFAULT_ELEMENTS};
@@ -85,6 +85,21 @@ fn recorded(campaign: &Campaign, by: &dyn Fn(usize) -> Vector3<f64>, noise: f64,
         *point += by(row) + Vector3::from_fn(|_, _| noise * random.normal());
     }
     recorded
+}
+
+/// Places of `rows` poses that a tracker saw.
+fn tracked(rows: usize, seen: &dyn Fn(usize, &Vector3<f64>) -> Vector3<f64>) -> Campaign {
+    let robot = Robot::from_text("tx90.toml", ROBOT, None, None).unwrap();
+    let tool = Vector3::new(0.06, 0.01, 0.12);
+    let mut random = Random::seeded(12, 0);
+    let mut recording = Recording::new(6);
+    for row in 0..rows {
+        let q: Vec<f64> = (0..6).map(|_| random.uniform(-1.7, 1.7)).collect();
+        let tip = robot.flange_at(&q).point(&tool);
+        let noise = Vector3::from_fn(|_, _| 15.0 * UM * random.normal());
+        recording.add(&q, seen(row, &tip) + noise).unwrap();
+    }
+    Campaign::new(robot, recording).unwrap().with_tool(tool)
 }
 
 fn find(model: &CalibrationModel, effect: &str, location: &str) -> usize {

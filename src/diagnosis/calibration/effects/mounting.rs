@@ -18,7 +18,7 @@ use crate::diagnosis::calibration::model::vector::{self, Length};
 use crate::inference::{
     Candidate, Effect, Estimate, Finding, FindingPart, Kind, Location, NotTestable, Reported, WrittenTo,
 };
-use crate::units::{MM, UM};
+use crate::units::{MM, UM, URAD};
 
 /// Distance of the ball from the flange below which no rotation moves it, m.
 const LEAST_LEVER: f64 = 10.0 * MM;
@@ -47,7 +47,10 @@ pub static BASE_SHIFT: CalibrationEffect = CalibrationEffect {
     estimates: own_parameters,
     observed: |finding, _| {
         let by = size(finding, UM).with_unit("µm");
-        format!("The robot moved on its base by {by} {}", finding.location)
+        let turned = finding.parts.first().map_or_else(String::new, |part| {
+            format!(" and turned by {}", vector::size_of(part, 3..6, URAD).with_unit("µrad"))
+        });
+        format!("The robot moved on its base by {by}{turned} {}", finding.location)
     },
     write: out_of_the_points,
     transfer: Transfer::Made(stays_moved),

@@ -187,8 +187,8 @@ fn of_arm(context: &Context, course: Course, values: &[f64]) -> Entry {
     single(&THERMAL_DRIFT, location, parameter, column).by(Law::Warms(course, Warmed::Arm))
 }
 
-/// A base that turns, as on a floor that gives way, or a tracker on a tripod that settles, which are
-/// the same: φ × (ball − base) + d. Where about it turns is d's.
+/// A base that turns, as on a floor that gives way, or a tracker on a tripod that settles, which
+/// are the same: φ × (ball − base) + d. Where about it turns is d's.
 fn of_base(context: &Context, course: Course, values: &[f64]) -> Entry {
     let size = usual(course, values);
     let (angle, length) = (course.angle_unit().0, course.unit().0);

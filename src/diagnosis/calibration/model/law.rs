@@ -34,7 +34,8 @@ pub enum Law {
     Hung(Hung),
     /// Drift.
     Drift(Course, Frame),
-    /// Drift of a joint or its link, growth of the arm, or of what a tracker shows; a base that turns.
+    /// Drift of a joint or its link, of the base's orientation, growth of the arm, or of what a
+    /// tracker shows.
     Warms(Course, Warmed),
     /// A clamp, a socket or the sockets of a plate that moved, by their numbers among the groups of
     /// the recording.

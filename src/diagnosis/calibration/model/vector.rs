@@ -2,6 +2,8 @@
 //! interval ± k·√(gᵀ·Σ·g): coverage factor k, gradient g, posterior covariance Σ (GUM: law of
 //! propagation of uncertainty).
 
+use std::ops::Range;
+
 use nalgebra::{DVector, Vector3};
 
 use crate::inference::{FindingPart, Quantity};
@@ -37,8 +39,14 @@ pub fn weighted_length(values: &[f64], weights: &[f64]) -> Length {
 
 /// Length of the vector of the first three values of a part, in `unit`.
 pub fn size(part: &FindingPart, unit: f64) -> Quantity {
-    let count = part.term.values.len().min(3);
-    let size = length(&part.term.values[..count]);
+    size_of(part, 0..3, unit)
+}
+
+/// The same of its values in `range`.
+pub fn size_of(part: &FindingPart, range: Range<usize>, unit: f64) -> Quantity {
+    let values = &part.term.values[..part.term.values.len().min(range.end)];
+    let counts: Vec<f64> = (0..values.len()).map(|k| f64::from(k >= range.start)).collect();
+    let size = weighted_length(values, &counts);
     let half = size.half_interval(part);
     Quantity {
         value: size.value / unit,

@@ -18,8 +18,8 @@ enum Base {
     Tilts,
 }
 
-/// Over the order of the poses, over times and temperatures that are known. Where sockets are nobody
-/// has measured: what turns the base, or joint 1, are plates that moved.
+/// Over the order of the poses, over times and temperatures that are known. Where sockets are
+/// nobody has measured: what turns the base, or joint 1, are plates that moved.
 pub(super) fn all(context: &Context) -> Vec<Entry> {
     let mut entries = Vec::new();
     let rows = &context.recording.rows;
@@ -41,14 +41,16 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
             entries.extend(turning(context, variable, &label, name, &values, Base::Tilts));
         }
     }
+    // the last joint turns as the tool moves
     let first = if context.has_sockets() { 1 } else { 0 };
-    let turns = context.revolute().into_iter().filter(|j| *j >= first);
+    let inner = first..context.joint_count().saturating_sub(1);
+    let turns = context.revolute().into_iter().filter(|j| inner.contains(j));
     entries.extend(turns.filter_map(|j| zero(context, j)));
     entries
 }
 
-/// A base that turns by itself, or the tracker that sees it: what several slips of the base describe
-/// roughly.
+/// A base that turns by itself, or the tracker that sees it: what several slips of the base
+/// describe roughly.
 ///
 /// Σ_k (a_k + b_k × (ball − base))·cos(π k x)        b_k along the vertical and a_k level, where
 ///                                                   the base stays so

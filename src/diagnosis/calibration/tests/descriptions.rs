@@ -123,9 +123,15 @@ fn sentences_are_those_of_the_laws() {
             "The tool drifts by 35 ± 2 µm per kelvin with temperature: thermal drift",
         ),
         (
+            "thermal_drift",
+            "base, turning, with order",
+            "The base turns against what measures it by 69 ± 4 µrad with order: thermal drift",
+        ),
+        (
             "base_shift",
             "after pose 20",
-            "The robot moved on its base by 1732 ± 100 µm after pose 20: a slip of the robot on its base",
+            "The robot moved on its base by 1732 ± 100 µm and turned by 1732 ± 100 µrad after pose 20: a \
+             slip of the robot on its base",
         ),
         (
             "clamp_shift",

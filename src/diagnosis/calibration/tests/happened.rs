@@ -1,6 +1,8 @@
 //! What happened to fixture and robot: columns against a fixture that is moved, and a robot that is
 //! moved or warms up.
 
+use std::f64::consts::PI;
+
 use super::changed::{Case, Row, assert_changes};
 use super::*;
 use crate::calibration::Compensation;
@@ -125,6 +127,24 @@ fn what_warms_up_grows_with_its_clock() {
             "base, with order",
             "y_um",
             Box::new(|r, row, v| r.setup.base_position.y += v * share[row]),
+        ),
+        (
+            "thermal_drift",
+            "base, turning, with temperature",
+            "rx_urad_per_k",
+            Box::new(|r, row, v| {
+                let foot = r.at_rest(|kinematics| kinematics.joints[0].origin);
+                r.turn_base(foot, axis(0) * v * warmth[row]);
+            }),
+        ),
+        (
+            "unknown",
+            "time, a curve of the base that turns about the vertical",
+            "about_2_cosine_3_urad",
+            Box::new(|r, row, v| {
+                let foot = r.at_rest(|kinematics| kinematics.joints[0].origin);
+                r.turn_base(foot, axis(2) * v * (3.0 * PI * time(row) / time(rows - 1)).cos());
+            }),
         ),
         (
             "thermal_drift",

@@ -9,16 +9,15 @@ const ANGLE: JointVariable = JointVariable::Angle;
 /// A recording of 100 poses by a tracker, whose first joint turns by so much more from half of the
 /// poses on; in the order of its angles, or in that in which they were chosen.
 fn slipped(is_sorted: bool) -> Finding {
-    let mut campaign = recorded(&clamps(12), &|_| Vector3::zeros(), 18.0 * UM, 3);
-    let mut own = campaign.validation.take().unwrap();
+    let mut campaign = tracked(100, &|_, tip| *tip);
+    let own = &mut campaign.measurements;
     if is_sorted {
         let mut order: Vec<usize> = (0..own.len()).collect();
         order.sort_by(|a, b| own.joints(*a)[0].total_cmp(&own.joints(*b)[0]));
-        own = own.subset(&order);
+        *own = own.subset(&order);
     }
     let (half, count) = (own.len() / 2, own.joint_count);
     own.joint_values.chunks_exact_mut(count).skip(half).for_each(|q| q[0] += 600e-6);
-    (campaign.measurements, campaign.rod, campaign.clamps) = (own, None, Vec::new());
     let found = diagnose_as_recorded(&campaign, Mode::None, &Options::default()).unwrap();
     let [finding] = &found.diagnosis.findings[..] else { panic!("{:?}", found.diagnosis.findings) };
     finding.clone()

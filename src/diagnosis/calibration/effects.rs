@@ -16,6 +16,7 @@ pub(super) mod device;
 pub(super) mod encoders;
 pub(super) mod events;
 pub(super) mod fixture;
+pub(super) mod fixture_drift;
 pub(super) mod gear;
 pub(super) mod joints;
 mod load_change;

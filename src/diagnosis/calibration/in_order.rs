@@ -1,7 +1,10 @@
 //! Poses that were recorded in the order of an angle, or of a coordinate of their places: what
 //! happened between them, or drifted, and what the robot does there look alike.
 
+use std::collections::BTreeSet;
+
 use super::model::CalibrationModel;
+use super::model::law::Law;
 use crate::inference::{
     Diagnosis, Discrepancy, Evidence, Finding, JointVariable, Location, Plan, PlannedPose, PosePlan,
     Proposal, Rival, UNKNOWN, Variable, separates,
@@ -105,15 +108,13 @@ fn curve(variable: Variable) -> Location {
 fn course(model: &CalibrationModel, evidence: &Evidence, finding: &Finding) -> Option<Vec<f64>> {
     let part = finding.parts.first()?;
     let rows = &model.campaign.measurements.rows;
+    let of_rows = |number: &dyn Fn(usize) -> f64| (0..rows.len()).map(number).collect::<Vec<f64>>();
     if let Some(last) = part.location.moved_after() {
-        let moved = model.by_row(&model.response_of(finding));
-        let mut groups: Vec<usize> =
-            (0..rows.len()).filter(|row| moved[*row].norm() > 0.0).map(|row| rows[row].group).collect();
-        groups.dedup();
-        let is_of_one = matches!(part.location, Location::Shift { what: Some(_), .. }) && groups.len() == 1;
-        let counts = |row: usize| !is_of_one || rows[row].group == groups[0];
-        let step = |row: usize| if counts(row) { f64::from(row > last) } else { f64::NAN };
-        return Some((0..rows.len()).map(step).collect());
+        let counts = |row: usize| match model.law(part.term.candidate) {
+            Law::Moved(groups) => groups.contains(&rows[row].group),
+            _ => true,
+        };
+        return Some(of_rows(&|row| if counts(row) { f64::from(row > last) } else { f64::NAN }));
     }
     let along = (finding.effect.seen_along)(&part.location);
     if along.is_empty() || !along.iter().all(|variable| variable.is_of_time()) {
@@ -121,7 +122,10 @@ fn course(model: &CalibrationModel, evidence: &Evidence, finding: &Finding) -> O
     }
     let known = |variable: Variable| evidence.covariates.iter().find(|own| own.variable == variable);
     let passed = along.into_iter().chain([Variable::Order]).find_map(known)?;
-    Some((0..rows.len()).map(|row| passed.values[3 * row]).collect())
+    let moved = model.by_row(&model.response_of(finding));
+    let groups: BTreeSet<usize> =
+        rows.iter().zip(moved).filter(|(_, by)| by.norm() > 0.0).map(|(row, _)| row.group).collect();
+    Some(of_rows(&|row| if groups.contains(&rows[row].group) { passed.values[3 * row] } else { f64::NAN }))
 }
 
 /// Some of the first poses after the last: what has happened by then is seen there too, what

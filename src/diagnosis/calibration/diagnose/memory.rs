@@ -18,7 +18,7 @@ pub const MEMORY_LIMIT: f64 = 2e9;
 const OF_JOINT: f64 = 1450.0;
 const OF_PAIR: f64 = 30.0;
 const OF_LINK: f64 = 9.0;
-const OF_ALL: f64 = 3500.0;
+const OF_ALL: f64 = 5000.0;
 /// What all else that has a number for each pose takes beside the columns, and what does not grow
 /// with the poses.
 const BESIDE: f64 = 1.3;

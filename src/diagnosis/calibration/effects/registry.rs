@@ -7,6 +7,7 @@ use super::device::SENSOR_SCALE;
 use super::encoders::{ENCODER_SCALE, WRIST_COUPLING};
 use super::events::{JOINT_SHIFT, OUTLIER};
 use super::fixture::{CLAMP_POSE, CLAMP_SHIFT, SOCKET_SHIFT};
+use super::fixture_drift::FIXTURE_DRIFT;
 use super::gear::TRANSMISSION_ERROR;
 use super::joints::{GRAVITY_TILT, JOINT_COMPLIANCE, JOINT_NONLINEAR_STIFFNESS};
 use super::load_change::LOAD_CHANGE;
@@ -20,7 +21,7 @@ use super::{CalibrationEffect, Context, Entry, mistakes};
 use crate::inference::{Effect, NotTestable};
 
 /// All of them, as they are listed wherever they are.
-pub static ALL: [&CalibrationEffect; 28] = [
+pub static ALL: [&CalibrationEffect; 29] = [
     &ROD_STIFFNESS,
     &TIP_MASS,
     &ROD_MASS,
@@ -43,6 +44,7 @@ pub static ALL: [&CalibrationEffect; 28] = [
     &CLAMP_POSE,
     &CLAMP_SHIFT,
     &SOCKET_SHIFT,
+    &FIXTURE_DRIFT,
     &BASE_SHIFT,
     &TOOL_SHIFT,
     &LOAD_CHANGE,

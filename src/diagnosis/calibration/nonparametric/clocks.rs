@@ -3,10 +3,11 @@
 
 use nalgebra::Vector3;
 
+use super::super::effects::fixture_drift::shares;
 use super::super::model::entry::{Entry, linear};
 use super::super::model::law::Frame;
 use super::super::model::{Configuration, Context};
-use super::curve::{MOST, SIZE, along, cosine, curve, scaled};
+use super::curve::{MOST, SIZE, along, cosine, curve, scaled, vectors};
 use crate::inference::Variable;
 
 /// How a base turns.
@@ -41,6 +42,7 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
             entries.extend(turning(context, variable, &label, name, &values, Base::Tilts));
         }
     }
+    entries.extend(shares(context).into_iter().map(|(group, shares)| fixture(context, group, &shares)));
     // the last joint turns as the tool moves
     let first = if context.has_sockets() { 1 } else { 0 };
     let inner = first..context.joint_count().saturating_sub(1);
@@ -92,6 +94,25 @@ fn turning(
     let label = format!("{label}, a curve of the base that {how}");
     let follows = format!("follows {name}, as a base that {how}");
     (lever > 0.0).then(|| curve(label, follows, Some(variable), parameters.collect()))
+}
+
+/// A clamp or a socket that goes its own way over its poses, which two or three knocks describe
+/// roughly.
+///
+/// Σ_k a_k·cos(π k x)        a_k a vector in {W}, x the share of its poses that are over
+fn fixture(context: &Context, group: usize, shares: &[f64]) -> Entry {
+    let name = &context.recording.groups[group].name;
+    let parameters = (1..=MOST).flat_map(|k| {
+        let course = |row: usize| if shares[row].is_nan() { 0.0 } else { cosine(k, shares[row]) };
+        vectors(context, &format!("cosine_{k}"), SIZE / (1 + k) as f64, Frame::World, &course)
+    });
+    let follows = format!("follows the order of the poses at {name}, along fixed directions");
+    curve(
+        format!("order at {name}, a curve in the world"),
+        follows,
+        Some(Variable::Order),
+        parameters.collect(),
+    )
 }
 
 /// A joint whose zero goes its own way while the poses are recorded: a drive that warms up by its

@@ -93,6 +93,26 @@ fn a_base_that_turns_is_no_row_of_slips() {
     assert_eq!((names, left), (vec!["base_shift"], None));
 }
 
+/// A clamp that settles, or whose sensors drift, was not knocked twice; one that was knocked was.
+#[test]
+fn a_clamp_that_settles_was_not_knocked() {
+    let campaign = clamps(24);
+    let rows = campaign.measurements.rows.iter().enumerate();
+    let own: Vec<usize> = rows.filter(|(_, row)| row.group == 1).map(|(row, _)| row).collect();
+    let drifted = |course: &dyn Fn(f64) -> f64| {
+        let over = |row: usize| own.iter().position(|k| *k == row).map(|k| k as f64 / own.len() as f64);
+        let by = |row: usize| Vector3::z() * (300.0 * UM * over(row).map_or(0.0, course));
+        diagnosed(&recorded(&campaign, &by, 20.0 * UM, 8), Mode::Fea)
+    };
+    let (names, left, _) = drifted(&|over| 1.0 - (-over / 0.15).exp());
+    assert_eq!((names, left), (vec!["fixture_drift"], None));
+    // there, back and beyond
+    let (names, _, place) = drifted(&|over| (6.0 * over).sin());
+    assert!(names.is_empty() && place == "order at clamp 2, a curve in the world", "{names:?} {place}");
+    let (names, left, _) = drifted(&|over| f64::from(u8::from(over > 0.4)));
+    assert_eq!((names, left), (vec!["clamp_shift"], None));
+}
+
 /// A tool that slips when gravity presses it by half of its weight, and stays there.
 #[test]
 fn a_tool_that_sticks_follows_what_it_was_last_pressed_to() {

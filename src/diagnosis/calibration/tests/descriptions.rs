@@ -128,6 +128,12 @@ fn sentences_are_those_of_the_laws() {
             "The base turns against what measures it by 69 ± 4 µrad with order: thermal drift",
         ),
         (
+            "fixture_drift",
+            "clamp 2, evenly over its poses",
+            "Clamp 2 drifts by 346 ± 20 µm, evenly over its poses: a clamp or socket that settles, or its \
+             sensors' zero that drifts",
+        ),
+        (
             "base_shift",
             "after pose 20",
             "The robot moved on its base by 1732 ± 100 µm and turned by 1732 ± 100 µrad after pose 20: a \

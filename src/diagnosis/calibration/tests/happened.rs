@@ -30,6 +30,9 @@ fn clamps_and_base_move_as_a_whole() {
     let still = Vector3::zeros();
     let is_there = |row: usize| recording.groups[recording.rows[row].group].name.to_string() == "clamp 2";
     let device = recording.groups.iter().find(|group| group.name.to_string() == "clamp 2").unwrap().device;
+    let own: Vec<usize> = (0..recording.len()).filter(|row| is_there(*row)).collect();
+    // the share of its poses that are over
+    let over = |row: usize| own.iter().position(|k| *k == row).map(|k| k as f64 / (own.len() - 1) as f64);
     let cases: Vec<Case> = vec![
         (
             "clamp_pose",
@@ -83,6 +86,29 @@ fn clamps_and_base_move_as_a_whole() {
             Box::new(|r, row, v| {
                 let foot = r.at_rest(|kinematics| kinematics.joints[0].origin);
                 r.turn_base(foot, axis(0) * if row >= 20 { v } else { 0.0 });
+            }),
+        ),
+        (
+            "fixture_drift",
+            "clamp 2, evenly over its poses",
+            "dy_um",
+            Box::new(move |r, row, v| r.off.y -= v * over(row).unwrap_or(0.0)),
+        ),
+        (
+            "fixture_drift",
+            "clamp 2, settling over 20 % of its poses",
+            "dx_um",
+            Box::new(move |r, row, v| {
+                let settled = |over: f64| 1.0 - (-over / 0.2).exp();
+                r.off.x -= v * over(row).map_or(0.0, settled);
+            }),
+        ),
+        (
+            "unknown",
+            "order at clamp 2, a curve in the world",
+            "z_cosine_2_um",
+            Box::new(move |r, row, v| {
+                r.off.z += v * over(row).map_or(0.0, |over| (2.0 * PI * over).cos());
             }),
         ),
         ("outlier", "pose 7", "dz_um", Box::new(|r, row, v| r.off.z += if row == 6 { v } else { 0.0 })),

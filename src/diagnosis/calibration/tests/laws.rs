@@ -143,6 +143,7 @@ const NO_POINTS: [&str; 18] = [
     "gravity_direction",
     "clamp_pose",
     "clamp_shift",
+    "fixture_drift",
     "socket_shift",
     "outlier",
     "contact_force_variation",

@@ -1,7 +1,8 @@
 //! What a diagnosis needs of memory, before it begins.
 //!
 //! ```text
-//! bytes ≈ 8·poses·columns·1.3 + 150 MB        columns: what all candidates have for each pose
+//! bytes ≈ 8·poses·columns·1.3 + 150 MB        columns: what all candidates have for each pose;
+//!                                             half as much again with a rod
 //! ```
 //!
 //! The columns of all candidates are most of it. What searches keep has limits of its own
@@ -22,20 +23,25 @@ const OF_ALL: f64 = 5000.0;
 /// What all else that has a number for each pose takes beside the columns, and what does not grow
 /// with the poses.
 const BESIDE: f64 = 1.3;
+/// So many times as much with a rod: robots with and without masses are compared, side by side.
+const WITH_ROD: f64 = 1.5;
 const ANYWAY: f64 = 150e6;
 
-/// About the bytes that the diagnosis of so many poses takes with so many joints that turn.
+/// About the bytes that the diagnosis of so many poses takes with so many joints that turn, and
+/// with a rod or without.
 ///
 /// ```
 /// use rodcal::diagnosis::calibration::memory_needed;
 ///
-/// assert!(memory_needed(1000, 6) < 0.3e9);
-/// assert!(memory_needed(10_000, 6) < 2e9);
+/// assert!(memory_needed(1000, 6, false) < 0.4e9);
+/// assert!(memory_needed(10_000, 6, false) < 2e9);
+/// assert!(memory_needed(10_000, 6, true) > 2e9);
 /// ```
-pub fn memory_needed(poses: usize, joints: usize) -> f64 {
+pub fn memory_needed(poses: usize, joints: usize, has_rod: bool) -> f64 {
     let (joints, pairs) = (joints as f64, 0.5 * joints as f64 * (joints as f64 - 1.0));
     let columns = OF_JOINT * joints + (OF_PAIR + OF_LINK * joints) * pairs + OF_ALL;
-    8.0 * poses as f64 * columns * BESIDE + ANYWAY
+    let rods = if has_rod { WITH_ROD } else { 1.0 };
+    8.0 * poses as f64 * columns * BESIDE * rods + ANYWAY
 }
 
 /// Refuses what needs too much.
@@ -56,17 +62,17 @@ pub fn memory_needed(poses: usize, joints: usize) -> f64 {
 pub fn check_memory(campaign: &Campaign) -> Result<()> {
     let poses = campaign.measurements.len();
     let joints = campaign.robot.joints.iter().filter(|joint| joint.motion == Motion::Revolute).count();
-    let needed = memory_needed(poses, joints);
-    if needed <= MEMORY_LIMIT {
+    let needed = |poses: usize| memory_needed(poses, joints, campaign.rod.is_some());
+    if needed(poses) <= MEMORY_LIMIT {
         return Ok(());
     }
-    let most = (MEMORY_LIMIT - ANYWAY) / (memory_needed(1, joints) - ANYWAY);
+    let most = (MEMORY_LIMIT - ANYWAY) / (needed(1) - ANYWAY);
     let every = (poses as f64 / most).ceil();
     Err(Error::NotApplicable {
         what: format!("a diagnosis of {}", campaign.file),
         why: format!(
             "its {poses} poses of {joints} joints need about {:.1} GB of memory; the limit is {:.0} GB",
-            needed / 1e9,
+            needed(poses) / 1e9,
             MEMORY_LIMIT / 1e9
         ),
         hint: format!(
@@ -97,6 +103,6 @@ mod tests {
         };
         assert!(refused(10_000).is_ok());
         let message = refused(60_000).unwrap_err();
-        assert!(message.contains("60000 poses of 6 joints") && message.contains("one row in 5"), "{message}");
+        assert!(message.contains("60000 poses of 6 joints") && message.contains("one row in 6"), "{message}");
     }
 }

@@ -231,29 +231,32 @@ fn moved(
     let rows = rows_of(context, |group| members.contains(&group));
     let tips = rows.iter().map(|&row| context.configurations[row].tip);
     let middle = tips.sum::<Vector3<f64>>() / rows.len().max(1) as f64;
-    let after = |before: usize| {
-        let on = |displacement: &dyn Fn(&Configuration) -> Vector3<f64>| {
-            context.part(rows[before]..context.configurations.len(), |row, there| {
-                match members.contains(&context.recording.rows[row].group) {
-                    true => -displacement(there),
-                    false => Vector3::zeros(),
-                }
-            })
-        };
-        let mut columns = three(&SHIFT, KNOCK.0, |axis| on(&|_| unit(axis)));
-        if turns {
-            let turned = |axis: usize| on(&|there: &Configuration| unit(axis).cross(&(there.tip - middle)));
-            columns.extend(three(&TURN, PLATE, turned));
-        }
+    let places = places(context, &rows);
+    let Some(&first) = places.first() else { return Vec::new() };
+    let on = |displacement: &dyn Fn(&Configuration) -> Vector3<f64>| {
+        context.part(rows[first]..context.configurations.len(), |row, there| {
+            match members.contains(&context.recording.rows[row].group) {
+                true => -displacement(there),
+                false => Vector3::zeros(),
+            }
+        })
+    };
+    let mut columns = three(&SHIFT, KNOCK.0, |axis| on(&|_| unit(axis)));
+    if turns {
+        let turned = |axis: usize| on(&|there: &Configuration| unit(axis).cross(&(there.tip - middle)));
+        columns.extend(three(&TURN, PLATE, turned));
+    }
+    let place = |before: usize| {
         let row = rows[before - 1];
         // poses in sockets often have no names of their own
         let after = match context.has_sockets() {
             true => format!("row {}", row + 1),
             false => context.pose_name(row),
         };
-        let location = Location::Shift { what: Some(name.to_owned()), row, after };
-        Entry::new(&effect.effect, location, columns).by(Law::Moved(members.to_vec()))
+        Location::Shift { what: Some(name.to_owned()), row, after }
     };
+    let always = Entry::new(&effect.effect, place(first), columns).by(Law::Moved(members.to_vec()));
+    let after = |before: usize| always.starting_at(rows[before], place(before));
     // a plate of which only one socket was visited from then on is that socket
     let group = |row: usize| context.recording.rows[row].group;
     let is_of_one = |before: &usize| {
@@ -261,5 +264,5 @@ fn moved(
         let is_own = |row: &usize| group(*row) == own;
         members.len() > 1 && rows[*before..].iter().all(is_own) && rows[..*before].iter().any(is_own)
     };
-    places(context, &rows).into_iter().filter(|before| !is_of_one(before)).map(after).collect()
+    places.into_iter().filter(|before| !is_of_one(before)).map(after).collect()
 }

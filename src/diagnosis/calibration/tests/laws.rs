@@ -134,7 +134,7 @@ const POINTS: [(&str, &str, (&str, &str), Form); 11] = [
 /// of three weights along three axes), what happens at one clamp or pose, what acts along the axes
 /// of a device, what turns a link or the base under a moment, waits that depend on the move or on
 /// the way, and friction as large as the torque whatever its sign.
-const NO_POINTS: [&str; 18] = [
+const NO_POINTS: [&str; 19] = [
     "rod_stiffness",
     "rod_mass",
     "tip_mass",

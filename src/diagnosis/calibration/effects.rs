@@ -11,12 +11,12 @@
 //! joint j, ∂tip/∂qⱼ in {W}, τⱼ the torque of all loads beyond it about its axis.
 
 pub(super) mod bending;
+pub(super) mod clamp_drift;
 pub(super) mod contact;
 pub(super) mod device;
 pub(super) mod encoders;
 pub(super) mod events;
 pub(super) mod fixture;
-pub(super) mod fixture_drift;
 pub(super) mod gear;
 pub(super) mod joints;
 mod load_change;

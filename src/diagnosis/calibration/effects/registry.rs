@@ -2,12 +2,12 @@
 
 use super::super::model::law::{Law, TakenUp};
 use super::bending::LINK_FLEXIBILITY;
+use super::clamp_drift::CLAMP_DRIFT;
 use super::contact::{CONTACT_FORCE_VARIATION, CONTACT_SPRING};
 use super::device::SENSOR_SCALE;
 use super::encoders::{ENCODER_SCALE, WRIST_COUPLING};
 use super::events::{JOINT_SHIFT, OUTLIER};
 use super::fixture::{CLAMP_POSE, CLAMP_SHIFT, SOCKET_SHIFT};
-use super::fixture_drift::FIXTURE_DRIFT;
 use super::gear::TRANSMISSION_ERROR;
 use super::joints::{GRAVITY_TILT, JOINT_COMPLIANCE, JOINT_NONLINEAR_STIFFNESS};
 use super::load_change::LOAD_CHANGE;
@@ -44,7 +44,7 @@ pub static ALL: [&CalibrationEffect; 29] = [
     &CLAMP_POSE,
     &CLAMP_SHIFT,
     &SOCKET_SHIFT,
-    &FIXTURE_DRIFT,
+    &CLAMP_DRIFT,
     &BASE_SHIFT,
     &TOOL_SHIFT,
     &LOAD_CHANGE,

@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 
-use super::super::effects::fixture_drift::shares;
+use super::super::effects::clamp_drift::shares;
 use super::super::model::entry::{Entry, linear};
 use super::super::model::law::Frame;
 use super::super::model::{Configuration, Context};
@@ -42,7 +42,7 @@ pub(super) fn all(context: &Context) -> Vec<Entry> {
             entries.extend(turning(context, variable, &label, name, &values, Base::Tilts));
         }
     }
-    entries.extend(shares(context).into_iter().map(|(group, shares)| fixture(context, group, &shares)));
+    entries.extend(shares(context).into_iter().map(|(group, shares)| clamp(context, group, &shares)));
     // the last joint turns as the tool moves
     let first = if context.has_sockets() { 1 } else { 0 };
     let inner = first..context.joint_count().saturating_sub(1);
@@ -96,11 +96,11 @@ fn turning(
     (lever > 0.0).then(|| curve(label, follows, Some(variable), parameters.collect()))
 }
 
-/// A clamp or a socket that goes its own way over its poses, which two or three knocks describe
+/// A clamp that goes its own way over its poses, which two or three knocks describe
 /// roughly.
 ///
 /// Σ_k a_k·cos(π k x)        a_k a vector in {W}, x the share of its poses that are over
-fn fixture(context: &Context, group: usize, shares: &[f64]) -> Entry {
+fn clamp(context: &Context, group: usize, shares: &[f64]) -> Entry {
     let name = &context.recording.groups[group].name;
     let parameters = (1..=MOST).flat_map(|k| {
         let course = |row: usize| if shares[row].is_nan() { 0.0 } else { cosine(k, shares[row]) };

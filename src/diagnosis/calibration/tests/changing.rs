@@ -105,7 +105,7 @@ fn a_clamp_that_settles_was_not_knocked() {
         diagnosed(&recorded(&campaign, &by, 20.0 * UM, 8), Mode::Fea)
     };
     let (names, left, _) = drifted(&|over| 1.0 - (-over / 0.15).exp());
-    assert_eq!((names, left), (vec!["fixture_drift"], None));
+    assert_eq!((names, left), (vec!["clamp_drift"], None));
     // there, back and beyond
     let (names, _, place) = drifted(&|over| (6.0 * over).sin());
     assert!(names.is_empty() && place == "order at clamp 2, a curve in the world", "{names:?} {place}");

@@ -128,10 +128,10 @@ fn sentences_are_those_of_the_laws() {
             "The base turns against what measures it by 69 ± 4 µrad with order: thermal drift",
         ),
         (
-            "fixture_drift",
+            "clamp_drift",
             "clamp 2, evenly over its poses",
-            "Clamp 2 drifts by 346 ± 20 µm, evenly over its poses: a clamp or socket that settles, or its \
-             sensors' zero that drifts",
+            "Clamp 2 drifts by 346 ± 20 µm, evenly over its poses: a clamp that settles, or its sensors' \
+             zero that drifts",
         ),
         (
             "base_shift",

@@ -89,13 +89,13 @@ fn clamps_and_base_move_as_a_whole() {
             }),
         ),
         (
-            "fixture_drift",
+            "clamp_drift",
             "clamp 2, evenly over its poses",
             "dy_um",
             Box::new(move |r, row, v| r.off.y -= v * over(row).unwrap_or(0.0)),
         ),
         (
-            "fixture_drift",
+            "clamp_drift",
             "clamp 2, settling over 20 % of its poses",
             "dx_um",
             Box::new(move |r, row, v| {

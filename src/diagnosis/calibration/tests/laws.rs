@@ -143,7 +143,7 @@ const NO_POINTS: [&str; 19] = [
     "gravity_direction",
     "clamp_pose",
     "clamp_shift",
-    "fixture_drift",
+    "clamp_drift",
     "socket_shift",
     "outlier",
     "contact_force_variation",

@@ -1,6 +1,6 @@
-//! A clamp or a socket that moves little by little while its own poses are recorded: bolts that
-//! settle, a stand that warms, a sensor of a clamp whose zero drifts. Several shifts describe that
-//! roughly.
+//! A clamp that moves little by little while its own poses are recorded: bolts that settle, a stand
+//! that warms, a sensor whose zero drifts. Several shifts describe that roughly. Sockets have no
+//! measured points that a drift could be taken out of: there shifts stand for it.
 
 use super::super::model::CalibrationModel;
 use super::super::model::entry::linear;
@@ -10,26 +10,26 @@ use super::{
 use crate::inference::{Effect, Finding, Key, Kind, Location, NotTestable, Reported, Variable, WrittenTo};
 use crate::units::{UM, capital};
 
-/// How far a fixture drifts, m.
+/// How far a clamp drifts, m.
 const DRIFT: f64 = 100.0 * UM;
-/// Time constants of what settles, as parts of the poses of a fixture.
+/// Time constants of what settles, as parts of the poses of a clamp.
 const SETTLING: [f64; 3] = [0.1, 0.2, 0.4];
-/// Fewest poses of a fixture that show a drift, and so many fixtures at most: of more, each has few
+/// Fewest poses of a clamp that show a drift, and so many clamps at most: of more, each has few
 /// poses.
-pub(in super::super) const FEWEST: usize = 8;
-pub(in super::super) const MOST_FIXTURES: usize = 30;
+const FEWEST: usize = 8;
+const MOST_CLAMPS: usize = 30;
 
-/// A fixture that drifts.
-pub static FIXTURE_DRIFT: CalibrationEffect = CalibrationEffect {
+/// A clamp that drifts.
+pub static CLAMP_DRIFT: CalibrationEffect = CalibrationEffect {
     effect: Effect {
-        name: "fixture_drift",
+        name: "clamp_drift",
         kind: Kind::Physics,
-        summary: "a clamp or a socket drifts while its poses are recorded",
+        summary: "a clamp drifts while its poses are recorded",
         formula: "−t·x, or −t·(1 − e^(−x/x₁)): x is the share of its poses that are over, t how far it drifts",
         prior: "100 µm: bolts that settle, a stand that warms by 10 K",
-        parameters: &[(&["dx_um", "dy_um", "dz_um"], "displacement of the clamp or socket in {W}")],
-        needs: "eight poses in a clamp or socket, of thirty at most",
-        cause: "a clamp or socket that settles, or its sensors' zero that drifts",
+        parameters: &[(&["dx_um", "dy_um", "dz_um"], "displacement of the clamp in {W}")],
+        needs: "eight poses in a clamp, of thirty at most",
+        cause: "a clamp that settles, or its sensors' zero that drifts",
         cause_at: |location| format!("drift ({location})"),
         written_to: WrittenTo::Recording,
         reported: Reported::Alone,
@@ -50,7 +50,7 @@ fn drifts(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
             SETTLING.map(|part| (format!("settling over {} % of its poses", 100.0 * part), Some(part)));
         std::iter::once(("evenly over its poses".to_owned(), None)).chain(settles)
     };
-    let of_fixture = |(group, shares): (usize, Vec<f64>)| {
+    let of_clamp = |(group, shares): (usize, Vec<f64>)| {
         let name = context.recording.groups[group].name.to_string();
         courses()
             .map(|(form, settling)| {
@@ -64,18 +64,19 @@ fn drifts(context: &Context, _: &mut Vec<NotTestable>) -> Vec<Entry> {
                     (linear(*name, DRIFT), column)
                 };
                 let location = Location::from(Key::new(name.clone()).rows(form));
-                Entry::new(&FIXTURE_DRIFT.effect, location, SHIFT.iter().enumerate().map(along).collect())
+                Entry::new(&CLAMP_DRIFT.effect, location, SHIFT.iter().enumerate().map(along).collect())
             })
             .collect::<Vec<_>>()
     };
-    shares(context).into_iter().flat_map(of_fixture).collect()
+    shares(context).into_iter().flat_map(of_clamp).collect()
 }
 
-/// For each fixture with enough poses its number and, by row, the share of its poses that are over,
-/// from 0 to 1; NaN at others. Nothing of what a tracker sees.
+/// For each clamp with enough poses its number and, by row, the share of its poses that are over,
+/// from 0 to 1; NaN at others. Nothing of sockets, and of what a tracker sees.
 pub(in super::super) fn shares(context: &Context) -> Vec<(usize, Vec<f64>)> {
     let (groups, rows) = (&context.recording.groups, &context.recording.rows);
-    if groups.len() > MOST_FIXTURES || groups.iter().any(|group| group.name.is_tracked()) {
+    let has_clamps = !context.has_sockets() && groups.iter().all(|group| !group.name.is_tracked());
+    if !has_clamps || groups.len() > MOST_CLAMPS {
         return Vec::new();
     }
     let of_group = |group: usize| {

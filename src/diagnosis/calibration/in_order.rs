@@ -3,11 +3,14 @@
 
 use std::collections::BTreeSet;
 
+use nalgebra::DVector;
+
 use super::model::CalibrationModel;
-use super::model::law::Law;
+use super::model::law::{Course, Law};
+use crate::calibration::campaign::Row;
 use crate::inference::{
-    Diagnosis, Discrepancy, Evidence, Finding, JointVariable, Location, Plan, PlannedPose, PosePlan,
-    Proposal, Rival, UNKNOWN, Variable, separates,
+    Diagnosis, Discrepancy, Evidence, Finding, ForwardModel, JointVariable, Location, Plan, PlannedPose,
+    PosePlan, Proposal, Rival, Term, UNKNOWN, Variable, separates,
 };
 
 /// Fewer poses on one side lie beyond the others by chance.
@@ -28,22 +31,29 @@ pub(super) fn with_what_follows_the_order(
     diagnosis: &mut Diagnosis,
 ) {
     let sigma = diagnosis.hypothesis.sigma;
+    let order = Progress::of_all((0..model.campaign.measurements.len()).map(|row| row as f64).collect());
     for finding in diagnosis.findings.iter_mut().filter(|finding| finding.unnamed.is_none()) {
-        let Some(course) = course(model, evidence, finding) else { continue };
-        let Some(variable) = recorded_along(evidence, &course) else { continue };
+        let Some(progress) = progress(model, evidence, finding) else { continue };
+        let Some(variable) = recorded_along(evidence, &progress) else { continue };
         let rival = Rival::without_term(&UNKNOWN, curve(variable), 1.0);
         finding.parts[0].unnamed = Some(rival.clone());
         finding.unnamed = Some(rival);
         if finding.next.as_ref().is_none_or(|next| next.separates_from.is_empty()) {
-            let again = once_more(model, finding, &course, variable, sigma);
+            let again = once_more(model, finding, &progress, variable, sigma);
             finding.next = again.or_else(|| finding.next.take());
         }
     }
-    if let Some(Discrepancy { location: Some(Location::Curve { follows, along: Some(along), .. }), .. }) =
+    if let Some(Discrepancy { candidate: Some(candidate), location: Some(location), .. }) =
         &mut diagnosis.discrepancy
+        && let Location::Curve { follows, along: Some(along), .. } = location
     {
-        let order: Vec<f64> = (0..model.campaign.measurements.len()).map(|row| row as f64).collect();
-        match recorded_along(evidence, &order) {
+        let values = vec![1.0; model.candidates()[*candidate].parameters.len()];
+        let response = model.response(&[Term { candidate: *candidate, values }]);
+        let progress = match along.is_of_time() {
+            true => passed(model, evidence, *along, &response),
+            false => Some(order),
+        };
+        match progress.and_then(|progress| recorded_along(evidence, &progress)) {
             Some(variable) if along.is_of_time() => *follows += &format!(", or {}", self::follows(variable)),
             Some(variable) if variable == *along => *follows += OR_THE_ORDER,
             _ => {}
@@ -51,23 +61,38 @@ pub(super) fn with_what_follows_the_order(
     }
 }
 
-/// The angle, or the coordinate of the tip, by which the poses with a smaller `course` (one per
-/// row; NaN does not count) differ from those with a larger one: nearly all pairs of such two lie
-/// one way. Of a step their share is U/mn (H. B. Mann, D. R. Whitney, *Ann. Math. Stat.* 18 (1947)
-/// 50–60), of what passes evenly (τ + 1)/2 (M. G. Kendall, *Biometrika* 30 (1938) 81–93).
-pub(super) fn recorded_along(evidence: &Evidence, course: &[f64]) -> Option<Variable> {
-    let counted = || (0..course.len()).filter(|row| !course[*row].is_nan());
-    let pairs =
-        || counted().flat_map(|a| counted().map(move |b| (a, b))).filter(|&(a, b)| course[a] < course[b]);
-    let (low, high) = counted().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), row| {
-        (low.min(course[row]), high.max(course[row]))
-    });
-    let on_side = |is_there: &dyn Fn(f64) -> bool| counted().filter(|row| is_there(course[*row])).count();
+/// How far something had come at each row.
+pub(super) struct Progress {
+    /// Whether it had happened, or what a clock showed. At clamps and sockets that it does not
+    /// concern as little as ever: what follows an angle is the same there.
+    pub at: Vec<f64>,
+    /// False of rows at those.
+    pub concerns: Vec<bool>,
+}
+
+impl Progress {
+    /// Of what concerns all rows.
+    pub fn of_all(at: Vec<f64>) -> Progress {
+        Progress { concerns: vec![true; at.len()], at }
+    }
+}
+
+/// The angle, or the coordinate of the tip, by which the rows at which less had happened differ
+/// from those at which more had: nearly all pairs of such two lie one way. Of a step their share is
+/// U/mn (H. B. Mann, D. R. Whitney, *Ann. Math. Stat.* 18 (1947) 50–60), of what passes evenly
+/// (τ + 1)/2 (M. G. Kendall, *Biometrika* 30 (1938) 81–93).
+pub(super) fn recorded_along(evidence: &Evidence, progress: &Progress) -> Option<Variable> {
+    let at = &progress.at;
+    let rows = || 0..at.len();
+    let pairs = || rows().flat_map(|a| rows().map(move |b| (a, b))).filter(|&(a, b)| at[a] < at[b]);
+    let (low, high) =
+        at.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &at| (low.min(at), high.max(at)));
+    let on_side = |is_there: &dyn Fn(f64) -> bool| at.iter().filter(|at| is_there(**at)).count();
     if on_side(&|at| at < high).min(on_side(&|at| at > low)) < FEWEST {
         return None;
     }
     // at one clamp or socket the tip stays where it is, but for what moved it
-    let is_everywhere = counted().count() == course.len();
+    let is_everywhere = progress.concerns.iter().all(|concerns| *concerns);
     let is_place = |variable: Variable| match variable {
         Variable::Joint(_, JointVariable::Angle) => true,
         Variable::Tip(_) => is_everywhere,
@@ -102,30 +127,46 @@ fn curve(variable: Variable) -> Location {
     Location::Curve { label: variable.to_string(), follows: follows(variable), along: Some(variable) }
 }
 
-/// What a finding follows as the time goes by, one number per row: whether it happened before, or
-/// the number that it changes with. NaN at clamps and sockets that it does not concern; nothing of
-/// what has nothing to do with the time.
-fn course(model: &CalibrationModel, evidence: &Evidence, finding: &Finding) -> Option<Vec<f64>> {
+/// How far a finding had come at each row: whether it had happened, or the clock that it follows.
+/// Nothing of what has nothing to do with the time.
+fn progress(model: &CalibrationModel, evidence: &Evidence, finding: &Finding) -> Option<Progress> {
     let part = finding.parts.first()?;
     let rows = &model.campaign.measurements.rows;
-    let of_rows = |number: &dyn Fn(usize) -> f64| (0..rows.len()).map(number).collect::<Vec<f64>>();
+    let law = model.law(part.term.candidate);
     if let Some(last) = part.location.moved_after() {
-        let counts = |row: usize| match model.law(part.term.candidate) {
-            Law::Moved(groups) => groups.contains(&rows[row].group),
-            _ => true,
-        };
-        return Some(of_rows(&|row| if counts(row) { f64::from(row > last) } else { f64::NAN }));
+        let concerns = |row: &Row| !matches!(law, Law::Moved(groups) if !groups.contains(&row.group));
+        let concerns: Vec<bool> = rows.iter().map(concerns).collect();
+        let has_happened = |(row, concerns): (usize, &bool)| f64::from(*concerns && row > last);
+        return Some(Progress { at: concerns.iter().enumerate().map(has_happened).collect(), concerns });
     }
     let along = (finding.effect.seen_along)(&part.location);
     if along.is_empty() || !along.iter().all(|variable| variable.is_of_time()) {
         return None;
     }
-    let known = |variable: Variable| evidence.covariates.iter().find(|own| own.variable == variable);
-    let passed = along.into_iter().chain([Variable::Order]).find_map(known)?;
-    let moved = model.by_row(&model.response_of(finding));
+    let clock = match law {
+        Law::Drift(Course::Temperature, _) | Law::Warms(Course::Temperature, _) => Variable::Temperature,
+        _ => Variable::Order,
+    };
+    passed(model, evidence, clock, &model.response_of(finding))
+}
+
+/// What a clock had shown of what makes such a response.
+fn passed(
+    model: &CalibrationModel,
+    evidence: &Evidence,
+    clock: Variable,
+    response: &DVector<f64>,
+) -> Option<Progress> {
+    let rows = &model.campaign.measurements.rows;
+    let moved = model.by_row(response);
     let groups: BTreeSet<usize> =
         rows.iter().zip(moved).filter(|(_, by)| by.norm() > 0.0).map(|(row, _)| row.group).collect();
-    Some(of_rows(&|row| if groups.contains(&rows[row].group) { passed.values[3 * row] } else { f64::NAN }))
+    let concerns: Vec<bool> = rows.iter().map(|row| groups.contains(&row.group)).collect();
+    let shown = evidence.covariates.iter().find(|own| own.variable == clock)?;
+    let own = || (0..rows.len()).filter(|row| concerns[*row]).map(|row| shown.values[3 * row]);
+    let least = own().fold(f64::INFINITY, f64::min);
+    let at = |row: usize| if concerns[row] { shown.values[3 * row] } else { least };
+    Some(Progress { at: (0..rows.len()).map(at).collect(), concerns })
 }
 
 /// Some of the first poses after the last: what has happened by then is seen there too, what
@@ -133,12 +174,12 @@ fn course(model: &CalibrationModel, evidence: &Evidence, finding: &Finding) -> O
 fn once_more(
     model: &CalibrationModel,
     finding: &Finding,
-    course: &[f64],
+    progress: &Progress,
     variable: Variable,
     sigma: f64,
 ) -> Option<Proposal> {
     let recording = &model.campaign.measurements;
-    let mut early: Vec<usize> = (0..course.len()).filter(|row| !course[*row].is_nan()).collect();
+    let mut early: Vec<usize> = (0..recording.len()).filter(|row| progress.concerns[*row]).collect();
     early.truncate(match finding.location.moved_after() {
         Some(last) => early.iter().filter(|row| **row <= last).count(),
         None => early.len() / 2,

@@ -107,13 +107,14 @@ pub static THERMAL_DRIFT: CalibrationEffect = CalibrationEffect {
         summary: "the arm drifts with temperature, time or order",
         formula: "d·(T − T̄), d·(t − t̄) or d·e^(−t/t₁), of the robot in {W} or of its tool in {T}; the same of \
                   a joint's zero, Jⱼ·d, or of the length of its link; d·(flange − base) where all links grow; \
-                  d + φ × (ball − base) where the base turns; d + k·(ball − base) where the scale of a tracker grows, k of it and d = −k·(tracker − base)",
+                  d + φ × (ball − base) where the base turns; d + k·(ball − base) where the scale of a \
+                  tracker grows, k of it and d = −k·(tracker − base)",
         prior: "10 µm/K (an arm of steel of 1 m grows by 12), but 50 µm at least over the recorded \
                 temperatures; 20 µm/h, as in a room that warms by \
                 2 K in an hour, or over a recording without a clock; 50 µm for a cold robot (a UR5 \
                 starts a recording some 60 µm off); of a joint as many µrad, of a link as many µm, of \
-                the arm as many µm/m, of a base that turns as many µrad, a third as often; of a tracker the third of that (3 m away it is as much: air changes \
-                its scale by 1 µm/m per kelvin, what a camera is made of by more)",
+                the arm as many µm/m, of a base that turns as many µrad, a third as often; of a tracker \
+                the third of that (3 m away it is as much: air changes its scale by 1 µm/m per kelvin, what a camera is made of by more)",
         parameters: &[
             (&["x_um_per_k", "y_um_per_k", "z_um_per_k"], "displacement per kelvin"),
             (&["x_um_per_h", "y_um_per_h", "z_um_per_h"], "displacement per hour"),

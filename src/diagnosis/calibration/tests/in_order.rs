@@ -1,7 +1,7 @@
 //! What happened between poses that were recorded in the order of an angle.
 
 use super::*;
-use crate::diagnosis::calibration::in_order::recorded_along;
+use crate::diagnosis::calibration::in_order::{Progress, recorded_along};
 use crate::inference::{Covariate, Finding, JointVariable, Plan, Variable};
 
 const ANGLE: JointVariable = JointVariable::Angle;
@@ -58,16 +58,23 @@ fn the_order_is_that_of_the_angle_by_which_earlier_poses_differ_from_later_ones(
     ];
     let step = |from: usize| (0..rows).map(|row| f64::from(row >= from)).collect::<Vec<f64>>();
     let order: Vec<f64> = (0..rows).map(|row| row as f64).collect();
-    assert_eq!(recorded_along(&evidence, &step(12)), Some(Variable::Joint(1, ANGLE)));
+    let along = |at: &[f64]| recorded_along(&evidence, &Progress::of_all(at.to_vec()));
+    assert_eq!(along(&step(12)), Some(Variable::Joint(1, ANGLE)));
     // within a block, by three poses alone, and evenly in time, nothing is in order
-    for course in [&step(6), &step(21), &order] {
-        assert_eq!(recorded_along(&evidence, course), None);
+    for at in [&step(6), &step(21), &order] {
+        assert_eq!(along(at), None);
     }
     let height = Variable::Tip(crate::spatial::Axis::Z);
     evidence.covariates.push(Covariate { variable: height, values: each(&falling) });
-    assert_eq!(recorded_along(&evidence, &order), Some(height));
+    assert_eq!(recorded_along(&evidence, &Progress::of_all(order.clone())), Some(height));
     // at one clamp the tip stays where it is
-    let at_one: Vec<f64> =
-        step(6).into_iter().enumerate().map(|(k, at)| if k < 12 { at } else { f64::NAN }).collect();
-    assert_eq!(recorded_along(&evidence, &at_one), None);
+    let second: Vec<bool> = (0..rows).map(|row| row >= 12).collect();
+    let moved = |concerns: Vec<bool>| Progress { at: step(18), concerns };
+    assert_eq!(recorded_along(&evidence, &moved(second.clone())), None);
+    // angles that other clamps were visited at too, where nothing moved, are no cause
+    let [to_and_fro, beyond] = [1, 2].map(|clamps| move |row: usize| (row % (12 * clamps)) as f64);
+    for (values, expected) in [(each(&to_and_fro), None), (each(&beyond), Some(Variable::Joint(0, ANGLE)))] {
+        evidence.covariates[0].values = values;
+        assert_eq!(recorded_along(&evidence, &moved(second.clone())), expected);
+    }
 }

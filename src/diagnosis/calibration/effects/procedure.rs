@@ -114,7 +114,8 @@ pub static THERMAL_DRIFT: CalibrationEffect = CalibrationEffect {
                 2 K in an hour, or over a recording without a clock; 50 µm for a cold robot (a UR5 \
                 starts a recording some 60 µm off); of a joint as many µrad, of a link as many µm, of \
                 the arm as many µm/m, of a base that turns as many µrad, a third as often; of a tracker \
-                the third of that (3 m away it is as much: air changes its scale by 1 µm/m per kelvin, what a camera is made of by more)",
+                the third of that (3 m away it is as much: air changes its scale by 1 µm/m per kelvin, \
+                what a camera is made of by more)",
         parameters: &[
             (&["x_um_per_k", "y_um_per_k", "z_um_per_k"], "displacement per kelvin"),
             (&["x_um_per_h", "y_um_per_h", "z_um_per_h"], "displacement per hour"),

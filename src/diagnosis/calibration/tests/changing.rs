@@ -82,15 +82,22 @@ fn a_base_that_turns_is_no_row_of_slips() {
     let turned = |course: &dyn Fn(f64) -> f64| {
         let by =
             |row: usize, tip: &Vector3<f64>| Vector3::x().cross(tip) * (400e-6 * course(row as f64 / 100.0));
-        diagnosed(&tracked(100, &|row, tip| tip + by(row, tip)), Mode::None)
+        tracked(100, &|row, tip| tip + by(row, tip))
     };
-    let (names, left, _) = turned(&|part| part);
+    let (names, left, _) = diagnosed(&turned(&|part| part), Mode::None);
     assert_eq!((names, left), (vec!["thermal_drift"], None));
     // there and back
-    let (names, _, place) = turned(&|part| (3.0 * part).sin());
+    let (names, _, place) = diagnosed(&turned(&|part| (3.0 * part).sin()), Mode::None);
     assert!(names.is_empty() && place.contains("a curve of the base that turns"), "{names:?} {place}");
-    let (names, left, _) = turned(&|part| f64::from(u8::from(part > 0.4)));
-    assert_eq!((names, left), (vec!["base_shift"], None));
+    let knocked = turned(&|part| f64::from(u8::from(part > 0.4)));
+    let found = diagnose_as_recorded(&knocked, Mode::None, &Options::default()).unwrap();
+    let [shift] = &found.diagnosis.findings[..] else { panic!("{:?}", found.diagnosis.findings) };
+    let said = shift.description.to_string();
+    let turn = said.split("turned by ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+    assert!(
+        (turn.parse::<f64>().unwrap() - 400.0).abs() < 40.0 && shift.effect.name == "base_shift",
+        "{said}"
+    );
 }
 
 /// A clamp that settles, or whose sensors drift, was not knocked twice; one that was knocked was.

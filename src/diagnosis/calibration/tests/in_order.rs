@@ -78,3 +78,22 @@ fn the_order_is_that_of_the_angle_by_which_earlier_poses_differ_from_later_ones(
         assert_eq!(recorded_along(&evidence, &moved(second.clone())), expected);
     }
 }
+
+/// What drifts with the order does so whatever a thermometer showed meanwhile.
+#[test]
+fn a_drift_in_poses_sorted_by_an_angle_may_as_well_follow_the_angle() {
+    let mut campaign = tracked(100, &|_, tip| *tip);
+    let own = &mut campaign.measurements;
+    let mut order: Vec<usize> = (0..own.len()).collect();
+    order.sort_by(|a, b| own.joints(*a)[1].total_cmp(&own.joints(*b)[1]));
+    *own = own.subset(&order);
+    for (k, row) in own.rows.iter_mut().enumerate() {
+        row.temperature = Some(22.0 + (0.3 * k as f64).sin());
+    }
+    let Targets::Points(points) = &mut own.targets else { panic!("no points") };
+    points.iter_mut().enumerate().for_each(|(row, point)| point.x += 6.0 * UM * row as f64);
+    let found = diagnose_as_recorded(&campaign, Mode::None, &Options::default()).unwrap();
+    let [drift] = &found.diagnosis.findings[..] else { panic!("{:?}", found.diagnosis.findings) };
+    let along = drift.unnamed.as_ref().map(|rival| rival.location.to_string());
+    assert_eq!((drift.effect.name, along.as_deref()), ("thermal_drift", Some("joint 2 angle")));
+}

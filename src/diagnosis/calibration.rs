@@ -43,6 +43,7 @@ mod write_back;
 pub use self::diagnose::memory::{MEMORY_LIMIT, check_memory, memory_needed};
 pub use self::laws::textbook::remark;
 pub use self::model::CalibrationModel;
+pub use self::model::covariance::{ScatterSource, ScatterSources, Source};
 pub use self::model::gear::{Curve, Gear};
 pub use self::model::law::{Course, Frame, Law, RodLoad, TakenUp};
 pub use self::model::validated::{OwnDiagnosis, Validated};

@@ -42,6 +42,8 @@ pub struct Sketch {
     pub correlated_noise: Option<CorrelatedNoise>,
     /// Ln of the probability of all of it, but for a constant of the recording.
     pub log_probability: f64,
+    /// True where something is left that has no name.
+    pub is_left_over: bool,
 }
 
 /// Of a recording whose `neighbours` nobody knows.
@@ -94,8 +96,10 @@ fn beside(
         _ => hypothesis.log_probability,
     };
     let log_probability = whole + search.whitening.log_jacobian();
+    let is_left_over = left_over.is_some();
     let none = &settled.residual - &settled.background * search.fit(&[]).background;
-    (Sketch { left: &settled.residual - predicted, hypothesis, correlated_noise, log_probability }, none)
+    let left = &settled.residual - predicted;
+    (Sketch { left, hypothesis, correlated_noise, log_probability, is_left_over }, none)
 }
 
 /// Ln of the probability of a recording without any effect, as [`Sketch`] has it.

@@ -11,6 +11,7 @@ pub mod limits;
 pub mod memory;
 pub mod one_law;
 pub mod prepared;
+pub mod scatter;
 pub mod sides;
 pub mod tails;
 
@@ -22,6 +23,7 @@ use self::hung::{BesideMasses, beside_hidden_masses, may_bend, may_hide, with_ri
 use self::limits::{far_out, limits, noisy};
 use self::memory::check_memory;
 use self::prepared::{FirstLook, Prepared};
+use self::scatter::scattered;
 use self::sides::{either, on_the_other_side, unknown_sides};
 use self::tails::{Tailed, tailed};
 use super::effects::contact::is_of_clamps;
@@ -96,7 +98,15 @@ pub fn diagnose_calibrated<'c>(
     let mut look = FirstLook::default();
     let mut may_hide_masses = false;
     for _ in 0..ROUNDS {
-        let Sketch { hypothesis, left, correlated_noise, .. } = sketch(&prepared.model, &prepared.evidence);
+        let mut seen = sketch(&prepared.model, &prepared.evidence);
+        if look.covariance.is_none()
+            && look.scatter.is_none()
+            && let Some(by_source) = scattered(campaign, &prepared, &seen, &look)?
+        {
+            (prepared, seen, look.covariance) =
+                (by_source.prepared, by_source.sketch, Some(by_source.covariance));
+        }
+        let Sketch { hypothesis, left, correlated_noise, .. } = seen;
         prepared.evidence.correlated_noise = correlated_noise;
         may_hide_masses |= may_hide(&prepared, &hypothesis);
         let about = calibrated_beside(&prepared, &hypothesis, &left)?.another();
@@ -124,7 +134,8 @@ pub fn diagnose_calibrated<'c>(
             Some(beside) => (beside.about, beside.carried),
             None => (prepared.about, look.carried),
         };
-        look = FirstLook { scatter: noise, weights, far_out, left, moved_after, turned, carried };
+        let covariance = look.covariance;
+        look = FirstLook { scatter: noise, covariance, weights, far_out, left, moved_after, turned, carried };
         let calibration = prepared.model.calibration;
         prepared = Prepared::about(campaign, calibration, about, &look)?;
         prepared.evidence.correlated_noise = correlated_noise;

@@ -60,7 +60,7 @@ pub(super) fn evidence_of(campaign: &Campaign, calibration: &Calibration, contex
     let sigma = context.noise;
     let mut residual = DVector::zeros(data);
     for row in 0..rows {
-        residual.fixed_rows_mut::<3>(3 * row).copy_from(&(-calibration.deviations[row] * context.scale[row]));
+        residual.fixed_rows_mut::<3>(3 * row).copy_from(&-context.counted(row, &calibration.deviations[row]));
     }
     let moved = if context.has_sockets() { 0 } else { recording.stations.len().saturating_sub(1) };
     let columns = calibration.parameters.len() + 3 * calibration.sockets.len() + 6 * moved;
@@ -159,18 +159,18 @@ fn free_count(calibration: &Calibration) -> usize {
 /// The rows of the Jacobian that belong to rows of the recording.
 fn fill(jacobian: &mut DMatrix<f64>, calibration: &Calibration, context: &Context) {
     let mut kinematics = Kinematics::new(&calibration.setup);
+    let weights = context.weights();
     for (row, configuration) in context.configurations.iter().enumerate() {
         kinematics.update(&configuration.joints, &configuration.torque);
         kinematics.tip = configuration.tip;
-        let scale = context.scale[row];
         let torque = context.torque_with_carried(row);
         for (k, estimated) in calibration.parameters.iter().enumerate() {
-            let column = kinematics.column(estimated.parameter, &torque) * scale;
+            let column = context.counted(row, &kinematics.column(estimated.parameter, &torque));
             jacobian.fixed_view_mut::<3, 1>(3 * row, k).copy_from(&column);
         }
         if context.has_sockets() {
             let first = free_count(calibration) + 3 * context.recording.rows[row].group;
-            (0..3).for_each(|axis| jacobian[(3 * row + axis, first + axis)] = -scale);
+            jacobian.fixed_view_mut::<3, 3>(3 * row, first).copy_from(&-weights[row]);
             continue;
         }
         let station = context.recording.rows[row].station;
@@ -178,9 +178,8 @@ fn fill(jacobian: &mut DMatrix<f64>, calibration: &Calibration, context: &Contex
             // the frame of its station, to first order: t and φ about the base
             let first = free_count(calibration) + 6 * (station - 1);
             let arm = configuration.tip - calibration.setup.base_guess.origin;
-            let turn = skew(&arm) * scale;
-            (0..3).for_each(|axis| jacobian[(3 * row + axis, first + axis)] = -scale);
-            jacobian.fixed_view_mut::<3, 3>(3 * row, first + 3).copy_from(&turn);
+            jacobian.fixed_view_mut::<3, 3>(3 * row, first).copy_from(&-weights[row]);
+            jacobian.fixed_view_mut::<3, 3>(3 * row, first + 3).copy_from(&(weights[row] * skew(&arm)));
         }
     }
 }

@@ -5,6 +5,7 @@ pub mod calibration_model;
 pub mod configuration;
 pub mod context;
 pub mod cosines;
+pub mod covariance;
 pub mod entry;
 pub mod gear;
 pub mod law;
@@ -13,6 +14,7 @@ pub mod patterns;
 pub mod torque_uncertainty;
 pub mod validated;
 pub mod vector;
+pub mod written_angles;
 
 pub use calibration_model::CalibrationModel;
 pub use configuration::Configuration;

@@ -18,6 +18,7 @@ mod load_change;
 mod loose;
 mod next;
 mod recorded;
+mod scatter;
 mod sensors;
 mod tails;
 mod transfer;

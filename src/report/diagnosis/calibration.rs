@@ -5,6 +5,7 @@ mod doubts;
 mod figures;
 mod joints;
 mod remains;
+mod scatter;
 mod validated;
 mod written;
 
@@ -74,7 +75,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
         before_correction: model.recorded.map(|recorded| recorded.rms / 3.0f64.sqrt()),
         doubtful: doubtful(found),
         nominal: far_from_file(found),
-        uneven: None,
+        uneven: model.scatter.as_ref().map(scatter::uneven),
         elsewhere,
         suspect: Box::new(|datum| {
             let row = &campaign.measurements.rows[datum / 3];

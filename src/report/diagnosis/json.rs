@@ -86,7 +86,7 @@ pub fn json(subject: &Subject) -> Value {
         "warnings": subject.all_warnings(),
     });
     if let Some(uneven) = &subject.uneven {
-        main["noise"]["sensors"] = uneven.sensors.clone();
+        main["noise"][uneven.key] = uneven.all.clone();
     }
     if let Some(noise) = subject.evidence.correlated_noise {
         main["noise"]["correlated"] = json!({ "share": noise.share, "length_poses": noise.length });

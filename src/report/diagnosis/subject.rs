@@ -106,12 +106,14 @@ pub struct Elsewhere {
     pub is_mismatch: bool,
 }
 
-/// Sensors that scatter otherwise than the others do.
+/// What scatters otherwise than the rest does.
 pub struct Uneven {
+    /// What it is, as a key of the JSON.
+    pub key: &'static str,
     /// In a sentence.
     pub words: String,
     /// As JSON, one object for each.
-    pub sensors: Value,
+    pub all: Value,
 }
 
 /// What was made of the remainder.

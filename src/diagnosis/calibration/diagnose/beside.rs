@@ -140,7 +140,7 @@ pub fn calibrated_beside<'c>(
     let loads = Loads::of(model, &hypothesis.terms);
     let Some(beside) = calibrated_with(model, &loads)? else { return Ok(Again::Same) };
     let recording = &model.campaign.measurements;
-    let residual = |row: usize| -beside.calibration.deviations[row] * model.scale(row);
+    let residual = |row: usize| -(model.weight(row) * beside.calibration.deviations[row]);
     let left = (0..recording.len()).flat_map(|row| <[f64; 3]>::from(residual(row)));
     let left = rms(&DVector::from_iterator(3 * recording.len(), left));
     let recorded = |all: &DVector<f64>| rms(&all.rows(0, prepared.evidence.recorded).into_owned());
@@ -201,7 +201,9 @@ fn turns(context: &Context, beside: &Calibration) -> bool {
 /// unequally.
 pub fn unequal(prepared: &Prepared, hypothesis: &Hypothesis, left: &DVector<f64>) -> Result<Option<Noise>> {
     let recording = &prepared.model.campaign.measurements;
-    let left = prepared.model.by_row(left);
+    let rows = 0..recording.len();
+    let left: Vec<Vector3<f64>> =
+        rows.map(|row| left.fixed_rows::<3>(3 * row) / prepared.context.scale(row)).collect();
     let known = Noise { is_stated: false, ..prepared.model.calibration.noise.clone() };
     let rank = prepared.model.calibration.fit.covariance.rank + hypothesis.determined.round() as usize;
     let noise = known.estimate(recording, &left, rank.min(3 * recording.len() - 1), Robust::None)?;

@@ -82,7 +82,7 @@ fn is_possible(model: &CalibrationModel, own: Hung) -> bool {
 
 /// Σ of the squares of what a calibration leaves, as its data count.
 fn left(model: &CalibrationModel, calibration: &Calibration) -> f64 {
-    let square = |(row, deviation): (usize, &Vector3<f64>)| (deviation * model.scale(row)).norm_squared();
+    let square = |(row, deviation): (usize, &Vector3<f64>)| (model.weight(row) * deviation).norm_squared();
     calibration.deviations.iter().enumerate().map(square).sum()
 }
 

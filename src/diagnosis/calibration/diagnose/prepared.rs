@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::super::effects::registry;
 use super::super::evidence;
 use super::super::model::context::Side;
+use super::super::model::covariance::Covariance;
 use super::super::model::torque_uncertainty::TorqueUncertainty;
 use super::super::model::{CalibrationModel, Context, LinearTerms};
 use super::super::nonparametric;
@@ -31,6 +32,8 @@ pub struct Prepared<'c> {
 pub struct FirstLook {
     /// How groups scatter, where they do so unequally.
     pub scatter: Option<Noise>,
+    /// What poses scatter by, where that is not as much along every axis.
+    pub covariance: Option<Covariance>,
     /// What each row counts, where tails are heavy.
     pub weights: Option<Vec<f64>>,
     /// Rows, from 0, that may as well have been misread as be such a tail.
@@ -83,6 +86,13 @@ impl<'c> Prepared<'c> {
         has_names: bool,
     ) -> Result<Prepared<'c>> {
         let context = Context::new(campaign, &about)?;
+        let context = match &look.covariance {
+            Some(covariance) => {
+                let whitens = covariance.weights(&context);
+                context.whitened(whitens)
+            }
+            None => context,
+        };
         let context = match &look.scatter {
             Some(noise) => context.scattered(&noise.of_group),
             None => context,
@@ -108,7 +118,8 @@ impl<'c> Prepared<'c> {
             tip_jacobians: jacobians.collect(),
             recorded: None,
             validated: None,
-            scale: context.scale.clone(),
+            scatter: look.covariance.as_ref().map(|covariance| covariance.sources(&context)),
+            weights: context.weights(),
             torque_uncertainty: TorqueUncertainty::new(campaign, &context),
             terms,
         };

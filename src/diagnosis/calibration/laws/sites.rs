@@ -101,9 +101,10 @@ impl Robot<'_> {
 
     /// A displacement of the tip in {W} at each row, as the data count it.
     fn weights(&self, displacement: &dyn Fn(&Configuration) -> Vector3<f64>) -> Vec<f64> {
-        let rows = self.context.configurations.iter().zip(&self.context.scale);
-        let of_row =
-            |(there, scale): (&Configuration, &f64)| -> [f64; 3] { (displacement(there) * *scale).into() };
+        let rows = self.context.configurations.iter().enumerate();
+        let of_row = |(row, there): (usize, &Configuration)| -> [f64; 3] {
+            self.context.counted(row, &displacement(there)).into()
+        };
         let mut weights: Vec<f64> = rows.flat_map(of_row).collect();
         weights.resize(self.data, 0.0);
         weights

@@ -1,7 +1,8 @@
 //! A calibrated campaign with all the physics that might be left in its residuals.
 
-use nalgebra::{DVector, Vector3};
+use nalgebra::{DVector, Matrix3, Vector3};
 
+use super::covariance::ScatterSources;
 use super::gear::Gear;
 use super::law::Law;
 use super::linear_terms::LinearTerms;
@@ -25,8 +26,10 @@ pub struct CalibrationModel<'c> {
     /// Errors of the validation, of which no search has seen anything: see
     /// [`look_at_validation`](crate::diagnosis::calibration::look_at_validation).
     pub validated: Option<Validated>,
-    /// What each row counts.
-    pub(in crate::diagnosis::calibration) scale: Vec<f64>,
+    /// What the scatter of the poses is made of, where it is not as large along every axis.
+    pub scatter: Option<ScatterSources>,
+    /// What a displacement in {W} at each row is among the data.
+    pub(in crate::diagnosis::calibration) weights: Vec<Matrix3<f64>>,
     /// How well torques are known.
     pub(in crate::diagnosis::calibration) torque_uncertainty: TorqueUncertainty,
     pub(in crate::diagnosis::calibration) terms: LinearTerms,
@@ -43,10 +46,10 @@ impl CalibrationModel<'_> {
         self.law(part.term.candidate).gear()
     }
 
-    /// Residuals and responses are rows of the recording times this: pooled noise over the noise of
-    /// the row's group.
-    pub fn scale(&self, row: usize) -> f64 {
-        self.scale.get(row).copied().unwrap_or(1.0)
+    /// Residuals and responses are displacements of the rows times this: pooled noise over the
+    /// noise of the row's group, less along what scatters more than the rest.
+    pub fn weight(&self, row: usize) -> Matrix3<f64> {
+        self.weights.get(row).copied().unwrap_or_else(Matrix3::identity)
     }
 
     /// Share of a candidate that the calibration cannot take up.
@@ -56,7 +59,9 @@ impl CalibrationModel<'_> {
 
     /// Of numbers by datum the displacement of each row in {W}, m: for residuals and responses.
     pub fn by_row(&self, data: &DVector<f64>) -> Vec<Vector3<f64>> {
-        let row = |row: usize| data.fixed_rows::<3>(3 * row).into_owned() / self.scale(row);
+        // a row that counts nothing says nothing
+        let undone = |row: usize| self.weight(row).try_inverse().unwrap_or_else(Matrix3::zeros);
+        let row = |row: usize| undone(row) * data.fixed_rows::<3>(3 * row);
         (0..self.tip_jacobians.len()).map(row).collect()
     }
 

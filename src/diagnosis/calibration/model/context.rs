@@ -5,7 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use super::configuration;
 use super::configuration::Configuration;
 use super::entry::Column;
-use super::patterns::Patterns;
+use super::patterns::{Patterns, pattern};
+use super::written_angles::written_steps;
 use crate::calibration::campaign::{Campaign, Recording, Targets};
 use crate::calibration::{
     Calibration, Carried, Compensation, Mode, Robust, SOFTEST, by_own_weight, plausible_compliances,
@@ -32,7 +33,11 @@ pub struct Context<'a> {
     /// Directions that many columns are multiples of.
     pub patterns: Patterns,
     /// What each row counts, relative to the others: mean noise over the noise of its group.
-    pub scale: Vec<f64>,
+    scale: Vec<f64>,
+    /// What whitens each row, beside that: the identity where poses scatter alike along every axis.
+    whitens: Vec<Matrix3<f64>>,
+    /// The step that the angles of each joint are written in, rad; 0 where none is seen.
+    pub written: Vec<f64>,
     /// Pooled noise of a coordinate, m.
     pub noise: f64,
     /// How far each row is off, in noises of its group.
@@ -98,6 +103,12 @@ impl<'a> Context<'a> {
             left: calibration.deviations.iter().map(|deviation| -deviation).collect(),
             ..still
         })
+    }
+
+    /// The same of poses that this whitens, row by row: see `covariance.rs`.
+    pub fn whitened(self, whitens: Vec<Matrix3<f64>>) -> Self {
+        let off = self.left.iter().zip(&whitens).map(|(left, w)| (w * left).norm() / self.noise).collect();
+        Context { patterns: Patterns::new(&self.configurations, &whitens), off, whitens, ..self }
     }
 
     /// The same where groups scatter by so much, m. Rows are scaled to the geometric mean over all,
@@ -193,17 +204,20 @@ impl<'a> Context<'a> {
             compliance: by_own_weight(rod, file) / crate::units::STANDARD_GRAVITY,
             body: without_tip(file),
         });
+        let motions: Vec<Motion> = campaign.robot.joints.iter().map(|joint| joint.motion).collect();
+        let whitens = vec![Matrix3::identity(); recording.len()];
         Ok(Context {
             recording,
             since: recording,
             scale: vec![1.0; recording.len()],
+            written: written_steps(recording, &motions),
             noise: 0.0,
             off: vec![0.0; recording.len()],
             left: vec![Vector3::zeros(); recording.len()],
             is_second_look: false,
             has_masses: campaign.robot.has_masses(),
             effects: &campaign.robot.effects,
-            motions: campaign.robot.joints.iter().map(|joint| joint.motion).collect(),
+            motions,
             force_compliance: rod.as_ref().map_or_else(Matrix3::zeros, |rod| rod.force),
             weight_compliance: rod
                 .as_ref()
@@ -217,9 +231,30 @@ impl<'a> Context<'a> {
             compliance_uncertainty: vec![0.0; softest.len()],
             softest,
             modelled_mass: modelled_mass(campaign),
-            patterns: Patterns::new(&configurations),
+            patterns: Patterns::new(&configurations, &whitens),
+            whitens,
             configurations,
         })
+    }
+
+    /// What a displacement in {W} is among the data: whitened, and times what its row counts.
+    pub fn counted(&self, row: usize, displacement: &Vector3<f64>) -> Vector3<f64> {
+        self.whitens[row] * displacement * self.scale[row]
+    }
+
+    /// What a row counts, whitened.
+    pub fn scale(&self, row: usize) -> f64 {
+        self.scale[row]
+    }
+
+    /// What each row counts, as a matrix of what a displacement in {W} is among the data.
+    pub fn weights(&self) -> Vec<Matrix3<f64>> {
+        self.whitens.iter().zip(&self.scale).map(|(whitens, scale)| whitens * *scale).collect()
+    }
+
+    /// A direction at every row, whitened.
+    pub fn pattern(&self, direction: impl Fn(usize, &Configuration) -> Vector3<f64>) -> Pattern {
+        pattern(&self.configurations, &self.whitens, direction)
     }
 
     /// A column of a displacement of the tip, m per unit of the parameter, by row.
@@ -235,8 +270,8 @@ impl<'a> Context<'a> {
     ) -> Column {
         let first = 3 * rows.start;
         let at = |row: usize| {
-            let scaled: [f64; 3] = (displacement(row, &self.configurations[row]) * self.scale[row]).into();
-            scaled
+            let counted: [f64; 3] = self.counted(row, &displacement(row, &self.configurations[row])).into();
+            counted
         };
         Column::new(first, rows.flat_map(at).collect(), None)
     }

@@ -1,6 +1,6 @@
-//! Directions that many columns are multiples of, row by row.
+//! Directions that many columns are multiples of, row by row, as they are among the data.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::configuration::Configuration;
 use crate::inference::Pattern;
@@ -18,13 +18,9 @@ pub struct Patterns {
 }
 
 impl Patterns {
-    pub fn new(configurations: &[Configuration]) -> Patterns {
+    pub fn new(configurations: &[Configuration], whitens: &[Matrix3<f64>]) -> Patterns {
         let pattern = |direction: &dyn Fn(&Configuration) -> Vector3<f64>| {
-            let of_row = |there: &Configuration| {
-                let direction: [f64; 3] = direction(there).into();
-                direction
-            };
-            Pattern { block: 3, values: configurations.iter().flat_map(of_row).collect() }
+            pattern(configurations, whitens, |_, there| direction(there))
         };
         let joints = configurations.first().map_or(0, |there| there.tip_jacobian.len());
         let turned = |link: usize, axis: usize| {
@@ -41,4 +37,17 @@ impl Patterns {
             link: (0..joints).map(|link| [0, 1, 2].map(|axis| turned(link, axis))).collect(),
         }
     }
+}
+
+/// A direction at every row, times what whitens it.
+pub fn pattern(
+    configurations: &[Configuration],
+    whitens: &[Matrix3<f64>],
+    direction: impl Fn(usize, &Configuration) -> Vector3<f64>,
+) -> Pattern {
+    let of_row = |(row, (there, whitens)): (usize, (&Configuration, &Matrix3<f64>))| {
+        let direction: [f64; 3] = (whitens * direction(row, there)).into();
+        direction
+    };
+    Pattern { block: 3, values: configurations.iter().zip(whitens).enumerate().flat_map(of_row).collect() }
 }

@@ -14,8 +14,6 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::Vector3;
-
 use super::super::effects::contact::is_of_clamps;
 use super::super::model::Context;
 use super::super::model::entry::{Column, Entry, linear};
@@ -154,13 +152,8 @@ fn over_displacement(context: &Context, axis: usize) -> Vec<Entry> {
     let rows = 0..context.configurations.len();
     let shown: Vec<f64> = rows.clone().map(|row| context.displacement(row)[axis]).collect();
     let Some(x) = scaled(&shown) else { return Vec::new() };
-    let direction = |which: usize| {
-        let of_row = |row: usize| -> [f64; 3] {
-            let direction: Vector3<f64> = context.recording.device(row).rotation.column(which).into();
-            direction.into()
-        };
-        Pattern { block: 3, values: rows.clone().flat_map(of_row).collect() }
-    };
+    let direction =
+        |which: usize| context.pattern(|row, _| context.recording.device(row).rotation.column(which).into());
     let along = Along { context, x, directions: [0, 1, 2].map(direction) };
     let letter = AXES[axis];
     let label = format!("displacement along {letter} of the clamps");

@@ -104,7 +104,7 @@ pub(super) fn assert_changes<'a>(campaign: &Campaign, calibration: &Calibration<
             let mut there = row(campaign, calibration, &compensation, at);
             let before = there.tip();
             change(&mut there, at, value);
-            let expected = (there.tip() - before) * context.scale[at];
+            let expected = context.counted(at, &(there.tip() - before));
             difference = difference.max((expected - predicted.fixed_rows::<3>(3 * at)).norm());
         }
         if predicted.amax() == 0.0 || difference > FIRST_ORDER * predicted.amax() {

@@ -90,7 +90,7 @@ fn a_clamp_of_five_times_the_noise_counts_a_twenty_fifth() {
     let (loud, quiet) = (rows_where(true).next().unwrap(), rows_where(false).next().unwrap());
     // 90 and 360 coordinates tell the ratio of the two variances within a sixth or so
     let mean = |is_noisy: bool| {
-        rows_where(is_noisy).map(|row| model.scale(row).powi(-2)).sum::<f64>()
+        rows_where(is_noisy).map(|row| model.weight(row)[(0, 0)].powi(-2)).sum::<f64>()
             / rows_where(is_noisy).count() as f64
     };
     let ratio = mean(true) / mean(false);
@@ -108,7 +108,7 @@ fn a_clamp_of_five_times_the_noise_counts_a_twenty_fifth() {
     assert!((rms(true) / rms(false) - 1.0).abs() < 0.2, "{} {}", rms(true), rms(false));
     for row in [loud, quiet] {
         let own: Vector3<f64> = residual.fixed_rows::<3>(3 * row).into();
-        assert!((own + calibration.deviations[row] * model.scale(row)).norm() < 1e-12);
+        assert!((own + model.weight(row) * calibration.deviations[row]).norm() < 1e-12);
     }
     // effects are felt with the same weight
     let index = find(&model, "thermal_drift", "base, with order");
@@ -117,9 +117,9 @@ fn a_clamp_of_five_times_the_noise_counts_a_twenty_fifth() {
     let change = model.response(&[drift]);
     for row in [loud, quiet] {
         let share = row as f64 / (rows.len() - 1) as f64 - 0.5;
-        assert!((change[3 * row] - share * model.scale(row)).abs() < 1e-12);
+        assert!((change[3 * row] - share * model.weight(row)[(0, 0)]).abs() < 1e-12);
     }
-    assert_nothing_more_is_absorbed(&campaign, &calibration, &evidence, &|row| model.scale(row));
+    assert_nothing_more_is_absorbed(&campaign, &calibration, &evidence, &|row| model.weight(row)[(0, 0)]);
 }
 
 #[test]
@@ -288,7 +288,7 @@ fn a_clamp_that_moved_does_not_count_less_and_so_stays_visible() {
     let noise = &calibration.noise;
     assert!(noise.of_group[1] > 5.0 * noise.of_group[0], "the calibration takes the clamp for a noisy one");
     let (model, _) = CalibrationModel::new(&campaign, calibration).unwrap();
-    let scale = |group: usize| model.scale(rows.iter().position(|row| row.group == group).unwrap());
+    let scale = |group: usize| model.weight(rows.iter().position(|row| row.group == group).unwrap())[(0, 0)];
     assert!(scale(1) > 0.5 * scale(0), "{} {}", scale(1), scale(0));
 }
 
@@ -301,7 +301,7 @@ fn rows_of_unequal_scatter_are_the_same_density_about_every_robot() {
     for _ in 0..2 {
         let of_group = [1.0, 2.0, 3.0, 4.0, 5.0].map(|scatter| scatter * 10.0 * UM);
         let context = Context::new(&campaign, &calibration).unwrap().scattered(&of_group);
-        let density: f64 = context.scale.iter().map(|scale| scale.ln()).sum();
+        let density: f64 = context.weights().iter().map(|weight| weight[(0, 0)].ln()).sum();
         assert!(density.abs() < 1e-9, "{density}");
         calibration.deviations.iter_mut().for_each(|deviation| *deviation *= 3.0);
     }

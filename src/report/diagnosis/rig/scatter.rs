@@ -40,7 +40,8 @@ pub fn uneven(found: &RigDiagnosis) -> Option<Uneven> {
             words.join(", "),
             um(noise)
         ),
-        sensors: Value::Array(sensors),
+        key: "sensors",
+        all: Value::Array(sensors),
     })
 }
 
@@ -72,7 +73,7 @@ mod tests {
             text += &format!("y,{measured:.4},{x:.2},{y:.2},{z:.2}\n");
         }
         let found = diagnose(&Readings::from_text("f", &text).unwrap(), None).unwrap();
-        let Uneven { words, sensors } = uneven(&found).unwrap();
+        let Uneven { words, all: sensors, .. } = uneven(&found).unwrap();
         let start = "Not all sensors scatter alike, and each counts as it does: the measured loads by 0.0";
         assert!(words.starts_with(start) && words.contains(" N, the others by 0."), "{words}");
         let noise = sensors[0]["noise_n"].as_f64().unwrap();

@@ -10,6 +10,7 @@
 //! ∂tip/∂parameter through the calibrated kinematics. In the formulae Jⱼ is the tip Jacobian of
 //! joint j, ∂tip/∂qⱼ in {W}, τⱼ the torque of all loads beyond it about its axis.
 
+pub(super) mod axes;
 pub(super) mod bending;
 pub(super) mod clamp_drift;
 pub(super) mod contact;
@@ -27,6 +28,7 @@ pub(super) mod payload;
 mod per_torque;
 pub(super) mod play;
 pub(super) mod procedure;
+pub(super) mod range;
 pub mod registry;
 pub(super) mod tracker;
 
@@ -154,6 +156,21 @@ pub(super) fn out_of_the_points(
     extended: &mut Campaign,
 ) -> WrittenTo {
     move_points(extended, &model.by_row(&model.response_of(finding)))
+}
+
+/// The same of what a device shows wrongly of places in {W}: it has shown the points of the
+/// validation too.
+fn out_of_what_is_shown(
+    finding: &Finding,
+    model: &CalibrationModel,
+    extended: &mut Campaign,
+    shown: impl Fn(&Vector3<f64>) -> Vector3<f64>,
+) -> WrittenTo {
+    let validation = extended.validation.as_mut().map(|recording| &mut recording.targets);
+    if let Some(Targets::Points(points)) = validation {
+        points.iter_mut().for_each(|point| *point -= shown(point));
+    }
+    out_of_the_points(finding, model, extended)
 }
 
 /// The measured points without a displacement of each row, m; sockets have none.

@@ -8,6 +8,7 @@ mod changing;
 mod coarse_angles;
 mod columns;
 mod descriptions;
+mod device;
 mod evidence;
 mod finding;
 mod happened;

@@ -73,7 +73,8 @@ fn at(law: &Law) -> f64 {
         | Law::Hung(_)
         | Law::Drift(..)
         | Law::Warms(..)
-        | Law::Moved(_) => 0.0,
+        | Law::Moved(_)
+        | Law::Axes(_) => 0.0,
     }
 }
 

@@ -148,7 +148,8 @@ fn compliance_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Drift(..)
         | Law::Warms(..)
         | Law::Bends(_)
-        | Law::Moved(_) => {
+        | Law::Moved(_)
+        | Law::Axes(_) => {
             let by = first(finding);
             let word = if by.value >= 0.0 { "more" } else { "less" };
             format!("{named} gives way by {} {word} than modelled", by.size().with_unit("µrad/(N·m)"))
@@ -238,7 +239,8 @@ fn nonlinear_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Drift(..)
         | Law::Warms(..)
         | Law::Bends(_)
-        | Law::Moved(_) => ("µrad/(N·m)²", "the square of"),
+        | Law::Moved(_)
+        | Law::Axes(_) => ("µrad/(N·m)²", "the square of"),
     };
     format!(
         "{} gives way with {power} its load, by {}",

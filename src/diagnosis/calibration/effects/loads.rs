@@ -115,7 +115,8 @@ fn rod_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Drift(..)
         | Law::Warms(..)
         | Law::Bends(_)
-        | Law::Moved(_) => None,
+        | Law::Moved(_)
+        | Law::Axes(_) => None,
     };
     let under = under.map_or_else(String::new, |under| format!(" {under}"));
     let softer = first(finding).map(|stiffness| 1.0 / stiffness).compared("softer", "stiffer");

@@ -25,7 +25,8 @@ pub(super) fn per_torque(model: &CalibrationModel, parts: &[FindingPart]) -> Vec
             | Law::Drift(..)
             | Law::Warms(..)
             | Law::Bends(_)
-            | Law::Moved(_) => 1.0,
+            | Law::Moved(_)
+            | Law::Axes(_) => 1.0,
         };
         let relative = known.of(part.location.joint());
         let wider = |estimate: &Estimate| {

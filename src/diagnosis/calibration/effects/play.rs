@@ -90,7 +90,8 @@ fn play_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Drift(..)
         | Law::Warms(..)
         | Law::Bends(_)
-        | Law::Moved(_) => (TakenUp::ByTorque, "taken up on the side that its load pulls to"),
+        | Law::Moved(_)
+        | Law::Axes(_) => (TakenUp::ByTorque, "taken up on the side that its load pulls to"),
     };
     let known = |joint: usize| play_in_file(&model.campaign.robot.effects, joint, taken_up);
     let known = finding.location.joint().map_or(0.0, known);

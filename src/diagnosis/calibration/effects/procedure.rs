@@ -340,7 +340,8 @@ fn drift_observed(finding: &Finding, model: &CalibrationModel) -> String {
         | Law::Rod(_)
         | Law::Hung(_)
         | Law::Bends(_)
-        | Law::Moved(_) => {
+        | Law::Moved(_)
+        | Law::Axes(_) => {
             format!("Drift by {} at {}", size.with_unit("µm"), finding.location)
         }
     }

@@ -1,6 +1,7 @@
 //! The list of all effects of a calibration: the only source of their names.
 
 use super::super::model::law::{Law, TakenUp};
+use super::axes::DEVICE_AXES;
 use super::bending::LINK_FLEXIBILITY;
 use super::clamp_drift::CLAMP_DRIFT;
 use super::contact::{CONTACT_FORCE_VARIATION, CONTACT_SPRING};
@@ -16,12 +17,13 @@ use super::mounting::{BASE_SHIFT, TOOL_SHIFT};
 use super::payload::PAYLOAD_MASS;
 use super::play::{BACKLASH, JOINT_FRICTION};
 use super::procedure::{READBACK_LAG, THERMAL_DRIFT};
+use super::range::RANGE_OFFSET;
 use super::tracker::TRACKER_LAG;
 use super::{CalibrationEffect, Context, Entry, mistakes};
 use crate::inference::{Effect, NotTestable};
 
 /// All of them, as they are listed wherever they are.
-pub static ALL: [&CalibrationEffect; 29] = [
+pub static ALL: [&CalibrationEffect; 31] = [
     &ROD_STIFFNESS,
     &TIP_MASS,
     &ROD_MASS,
@@ -41,6 +43,8 @@ pub static ALL: [&CalibrationEffect; 29] = [
     &TRANSMISSION_ERROR,
     &READBACK_LAG,
     &TRACKER_LAG,
+    &RANGE_OFFSET,
+    &DEVICE_AXES,
     &CLAMP_POSE,
     &CLAMP_SHIFT,
     &SOCKET_SHIFT,

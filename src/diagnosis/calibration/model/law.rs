@@ -40,6 +40,8 @@ pub enum Law {
     /// A clamp, a socket or the sockets of a plate that moved, by their numbers among the groups of
     /// the recording.
     Moved(Vec<usize>),
+    /// The scale of an axis of {W}, from 0, that is both of these, or the shear of two.
+    Axes([usize; 2]),
 }
 
 /// What takes up the play of a joint.
@@ -132,7 +134,8 @@ impl Law {
             | Law::Drift(..)
             | Law::Warms(..)
             | Law::Bends(_)
-            | Law::Moved(_) => None,
+            | Law::Moved(_)
+            | Law::Axes(_) => None,
         }
     }
 }
@@ -159,7 +162,8 @@ impl Law {
             | Law::Drift(..)
             | Law::Warms(..)
             | Law::Bends(_)
-            | Law::Moved(_) => self,
+            | Law::Moved(_)
+            | Law::Axes(_) => self,
         }
     }
 }

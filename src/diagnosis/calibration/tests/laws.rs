@@ -132,9 +132,9 @@ const POINTS: [(&str, &str, (&str, &str), Form); 11] = [
 
 /// What is no function of one variable at one place of the grammar: loads that bend the rod (each
 /// of three weights along three axes), what happens at one clamp or pose, what acts along the axes
-/// of a device, what turns a link or the base under a moment, waits that depend on the move or on
+/// of a device or towards it, what turns a link or the base under a moment, waits that depend on
 /// the way, and friction as large as the torque whatever its sign.
-const NO_POINTS: [&str; 19] = [
+const NO_POINTS: [&str; 21] = [
     "rod_stiffness",
     "rod_mass",
     "tip_mass",
@@ -153,6 +153,8 @@ const NO_POINTS: [&str; 19] = [
     "gravity_tilt",
     "readback_lag",
     "tracker_lag",
+    "range_offset",
+    "device_axes",
     "joint_friction",
 ];
 

@@ -9,7 +9,7 @@ use crate::units::DEG;
 
 /// Poses of a tracker that stands 3 m away, whose angles differ from those that are recorded, and
 /// whose ball is seen beside its place; noise of 20 µm along every axis.
-fn seen(
+pub(super) fn seen(
     angles: &dyn Fn(&mut [f64], &mut Random),
     place: &dyn Fn(&Vector3<f64>, &mut Random) -> Vector3<f64>,
     seed: u64,
@@ -45,7 +45,7 @@ fn only(campaign: &Campaign) -> (Source, f64, f64) {
     (own.source, own.size, found.own)
 }
 
-fn as_it_is(_: &mut [f64], _: &mut Random) {}
+pub(super) fn as_it_is(_: &mut [f64], _: &mut Random) {}
 
 fn in_place(_: &Vector3<f64>, _: &mut Random) -> Vector3<f64> {
     Vector3::zeros()

@@ -41,7 +41,7 @@ fn words(own: &ScatterSource) -> String {
 }
 
 fn source(own: &ScatterSource) -> Value {
-    let (of, key, size) = match own.source {
+    let (name, key, size) = match own.source {
         Source::Written => ("written angles".to_owned(), "step_deg", own.size / DEG),
         Source::Joints => ("all joints".to_owned(), "sd_urad", own.size / UM),
         Source::Angle(joint) => (format!("joint {}", joint + 1), "sd_urad", own.size / UM),
@@ -50,7 +50,7 @@ fn source(own: &ScatterSource) -> Value {
         Source::Range => ("line of sight".to_owned(), "sd_um", own.size / UM),
         Source::Sight => ("direction of sight".to_owned(), "sd_urad", own.size / UM),
     };
-    json!({ "source": of, key: size, "share": own.share })
+    json!({ "source": name, key: size, "share": own.share })
 }
 
 fn everything_else(scatter: &ScatterSources) -> Value {

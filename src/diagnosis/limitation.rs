@@ -121,7 +121,7 @@ impl fmt::Display for Limitation {
             ),
             Limitation::CoarseAngles(step, tip) => write!(
                 f,
-                "Joint angles are written to {}°: that alone scatters the tip by {} µm per coordinate. Write more \
+                "Joint angles are written in steps of up to {}°: that alone scatters the tip by {} µm per coordinate. Write more \
                  digits.",
                 significant(*step, 1),
                 significant(tip / UM, 2)

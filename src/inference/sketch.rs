@@ -42,8 +42,9 @@ pub struct Sketch {
     pub correlated_noise: Option<CorrelatedNoise>,
     /// Ln of the probability of all of it, but for a constant of the recording.
     pub log_probability: f64,
-    /// True where something is left that has no name.
-    pub is_left_over: bool,
+    /// Share of the squares of what it leaves that belongs to something without a name; 0 where
+    /// there is nothing of that kind.
+    pub left_over: f64,
 }
 
 /// Of a recording whose `neighbours` nobody knows.
@@ -95,11 +96,18 @@ fn beside(
         Some(DiscrepancyModel::Curve(longer)) => longer.log_probability.max(hypothesis.log_probability),
         _ => hypothesis.log_probability,
     };
-    let log_probability = whole + search.whitening.log_jacobian();
-    let is_left_over = left_over.is_some();
-    let none = &settled.residual - &settled.background * search.fit(&[]).background;
     let left = &settled.residual - predicted;
-    (Sketch { left, hypothesis, correlated_noise, log_probability, is_left_over }, none)
+    let log_probability = whole + search.whitening.log_jacobian();
+    let share_of = |longer: &Hypothesis| {
+        let rest = &settled.residual - search.predicted(longer, &settled, &model.response(&longer.terms));
+        1.0 - rest.norm_squared() / left.norm_squared().max(f64::MIN_POSITIVE)
+    };
+    let left_over = match &left_over {
+        None => 0.0,
+        Some(found) => found.curve().map_or(1.0, share_of).max(f64::MIN_POSITIVE),
+    };
+    let none = &settled.residual - &settled.background * search.fit(&[]).background;
+    (Sketch { left, hypothesis, correlated_noise, log_probability, left_over }, none)
 }
 
 /// Ln of the probability of a recording without any effect, as [`Sketch`] has it.

@@ -109,6 +109,7 @@ fn location(subject: &mut Subject) -> Section {
 
 fn remains(subject: &Subject) -> Section {
     let diagnosis = subject.diagnosis;
+    let sources = subject.uneven.iter().flat_map(|uneven| uneven.table.clone()).map(Block::Table);
     let Some(left) = &subject.remainder else {
         let whose = whose(subject);
         let words = format!(
@@ -118,10 +119,11 @@ fn remains(subject: &Subject) -> Section {
             um(diagnosis.noise),
             if is_scatter_estimated(subject) { ", with the fitted parameters allowed for" } else { "" }
         );
-        return Section::new("What remains", vec![Block::Paragraph(words)]);
+        return Section::new("What remains", [vec![Block::Paragraph(words)], sources.collect()].concat());
     };
     let table = left.table(subject.noun);
-    Section::new("What remains", vec![Block::Paragraph(left.sentence.clone()), Block::Table(table)])
+    let blocks = vec![Block::Paragraph(left.sentence.clone()), Block::Table(table)];
+    Section::new("What remains", [blocks, sources.collect()].concat())
 }
 
 /// What the base model hides, and what the files have no data for.

@@ -8,6 +8,7 @@ use crate::inference::law::Proposed;
 use crate::inference::{Absorbed, Candidate, Diagnosis, Evidence, NotTestable, Plan, WrittenTo};
 use crate::report::Block;
 use crate::report::Section;
+use crate::report::table::Table;
 
 /// A diagnosed recording as its report sees it.
 pub struct Subject<'a> {
@@ -114,6 +115,8 @@ pub struct Uneven {
     pub words: String,
     /// As JSON, one object for each.
     pub all: Value,
+    /// As a table, where there is one.
+    pub table: Option<Table>,
 }
 
 /// What was made of the remainder.

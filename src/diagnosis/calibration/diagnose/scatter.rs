@@ -34,6 +34,14 @@ const FAR: f64 = 6.0;
 /// Times that it is estimated; and ln of the ratio of two variances that are as good as the same.
 const ROUNDS: usize = 3;
 const ALIKE: f64 = 0.1;
+/// Share of the squares of what is left beyond which it follows something.
+const STRUCTURED: f64 = 0.6;
+/// Least scatter that has sources, m: below it stand last digits.
+const LEAST: f64 = 1e-6;
+/// The largest scatter of an angle that is none, rad: arms repeat poses to a tenth of it. And how
+/// many times as much a device may scatter along one axis as along the others.
+const MOST_ANGLE: f64 = 500e-6;
+const MOST_TIMES: f64 = 10.0;
 /// Steps of an iteration, and the growth of ln L below which it ends.
 const STEPS: usize = 100;
 const GROWTH: f64 = 1e-4;
@@ -55,6 +63,9 @@ pub fn scattered<'c>(
     plain: &Sketch,
     look: &FirstLook,
 ) -> Result<Option<Scattered<'c>>> {
+    if plain.left_over > STRUCTURED {
+        return Ok(None);
+    }
     let rank = prepared.model.calibration.fit.covariance.rank as f64;
     let mut best: Option<Scattered> = None;
     // what was found beside equal scatter has taken up some of it
@@ -76,7 +87,7 @@ pub fn scattered<'c>(
         let own = sketch(&beside.model, &beside.evidence);
         beside.evidence.correlated_noise = own.correlated_noise;
         // what is structured beside it as well is no scatter, and nobody knows which part of it is
-        if own.is_left_over || own.correlated_noise.is_some() {
+        if own.left_over > 0.0 || own.correlated_noise.is_some() {
             return Ok(None);
         }
         let density: f64 = beside.context.weights().iter().map(|weight| weight.determinant().ln()).sum();
@@ -103,7 +114,8 @@ fn is_alike(a: &Covariance, b: &Covariance) -> bool {
 /// `determined`, and what its sources cost; `None` where no source is worth it.
 fn likeliest(context: &Context, left: &[Vector3<f64>], determined: f64) -> Option<(Covariance, f64)> {
     let count = 3.0 * left.len() as f64;
-    if count - determined < FEWEST {
+    let mean_square = left.iter().map(|left| left.norm_squared()).sum::<f64>() / count;
+    if count - determined < FEWEST || mean_square < LEAST.powi(2) {
         return None;
     }
     // what a fit has taken up is missing
@@ -146,7 +158,19 @@ fn likeliest(context: &Context, left: &[Vector3<f64>], determined: f64) -> Optio
     let price = price(&chosen);
     let sources = chosen.into_iter().map(|k| sources[k]).zip(fit.sources).collect();
     let covariance = Covariance { own: fit.own, sources };
-    (!covariance.sources.is_empty()).then_some((covariance, price))
+    let is_scatter = !covariance.sources.is_empty() && is_plausible(context, &covariance);
+    is_scatter.then_some((covariance, price))
+}
+
+/// False for what is too much for scatter: then it follows something that nobody looks for.
+fn is_plausible(context: &Context, covariance: &Covariance) -> bool {
+    let distance = context.largest(|there| there.tip.norm());
+    covariance.sources.iter().all(|&(source, v)| match source {
+        Source::Written => true,
+        Source::Joints | Source::Angle(_) => v < MOST_ANGLE.powi(2),
+        Source::Way(_) | Source::Device(_) | Source::Range => v < MOST_TIMES.powi(2) * covariance.own,
+        Source::Sight => v * distance.powi(2) < MOST_TIMES.powi(2) * covariance.own,
+    })
 }
 
 /// How much rounding scatters is known.

@@ -35,8 +35,12 @@ pub static DEVICE_AXES: CalibrationEffect = CalibrationEffect {
         prior: "300 µm/m, and a tenth as often as another effect: cameras and measuring machines are known to \
                 0.1 mm in a metre and worse; a common scale cannot be distinguished from longer links",
         parameters: &[
-            (&SCALES, "scale of the axis"),
-            (&SHEARS, "shear of the two axes: by how much their angle is off, µrad"),
+            (&["scale_x_um_per_m"], "scale of x"),
+            (&["scale_y_um_per_m"], "scale of y"),
+            (&["scale_z_um_per_m"], "scale of z"),
+            (&["shear_xy_um_per_m"], "shear of x and y: how far from square, µrad"),
+            (&["shear_yz_um_per_m"], "shear of y and z: how far from square, µrad"),
+            (&["shear_zx_um_per_m"], "shear of z and x: how far from square, µrad"),
         ],
         needs: "points of a tracker, camera or measuring machine",
         cause: "unequal or oblique axes of the measuring device",

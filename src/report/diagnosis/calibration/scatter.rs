@@ -5,11 +5,18 @@ use serde_json::{Value, json};
 use crate::diagnosis::calibration::{ScatterSource, ScatterSources, Source};
 use crate::report::diagnosis::headline::um;
 use crate::report::diagnosis::subject::Uneven;
+use crate::report::table::{Column, Table};
 use crate::units::{DEG, UM, significant};
 
-/// As a sentence and as JSON.
+/// As a sentence, as JSON and as a table.
 pub fn uneven(scatter: &ScatterSources) -> Uneven {
-    let parts: Vec<String> = scatter.sources.iter().map(words).collect();
+    let all: Vec<Said> = scatter.sources.iter().map(said).collect();
+    let parts: Vec<String> = all.iter().map(Said::words).collect();
+    let rest = Said {
+        share: 1.0 - scatter.sources.iter().map(|own| own.share).sum::<f64>(),
+        ..of_every_axis(scatter)
+    };
+    let sources: Vec<Said> = all.into_iter().chain([rest]).collect();
     Uneven {
         key: "sources",
         words: format!(
@@ -17,43 +24,133 @@ pub fn uneven(scatter: &ScatterSources) -> Uneven {
             parts.join(", "),
             um(scatter.own)
         ),
-        all: scatter.sources.iter().map(source).chain([everything_else(scatter)]).collect(),
+        all: sources.iter().map(Said::json).collect(),
+        table: Some(table(&sources)),
     }
 }
 
-/// For example `99 µrad of the angle of joint 2 (84 % of its square)`.
-fn words(own: &ScatterSource) -> String {
-    let [urad, um] = [own.size, own.size].map(|size| significant(size / UM, 2));
-    let what = match own.source {
+/// A source in words.
+struct Said {
+    /// As in the JSON and in the table.
+    name: String,
+    /// What comes after its size.
+    of: String,
+    /// Size in a unit, and the key of it.
+    size: f64,
+    unit: &'static str,
+    key: &'static str,
+    share: f64,
+}
+
+impl Said {
+    /// For example `99 µrad of the angle of joint 2 (84 % of its square)`.
+    fn words(&self) -> String {
+        let size = match self.key {
+            STEP => format!("steps of up to {}°", short(self.size)),
+            _ => format!("{} {}", significant(self.size, 2), self.unit),
+        };
+        format!("{size} {} ({} % of its square)", self.of, significant(100.0 * self.share, 2))
+    }
+
+    fn json(&self) -> Value {
+        json!({ "source": self.name, self.key: self.size, "share": self.share })
+    }
+}
+
+/// Key of the step of angles that are written in steps.
+const STEP: &str = "step_deg";
+
+fn said(own: &ScatterSource) -> Said {
+    let angle = |name: String, of: String| (name, of, own.size / UM, "µrad", "sd_urad");
+    let length = |name: String, of: String| (name, of, own.size / UM, "µm", "sd_um");
+    let (name, of, size, unit, key) = match own.source {
         Source::Written => {
-            format!("steps of up to {}° that the angles are written in", significant(own.size / DEG, 2))
+            ("written angles".into(), "that the angles are written in".into(), own.size / DEG, "°", STEP)
         }
-        Source::Joints => format!("{urad} µrad of the angle of each joint"),
-        Source::Angle(joint) => format!("{urad} µrad of the angle of joint {}", joint + 1),
-        Source::Way(joint) => format!("{um} µm of the way of joint {}", joint + 1),
-        Source::Device(axis) => format!("{um} µm along {axis} of the device"),
-        Source::Range => format!("{um} µm along the line of sight from the origin of {{W}}"),
-        Source::Sight => {
-            format!("{urad} µrad of the direction in which the ball is seen from the origin of {{W}}")
+        Source::Joints => angle("all joints".into(), "of the angle of each joint".into()),
+        Source::Angle(joint) => {
+            angle(format!("joint {}", joint + 1), format!("of the angle of joint {}", joint + 1))
         }
+        Source::Way(joint) => {
+            length(format!("joint {}", joint + 1), format!("of the way of joint {}", joint + 1))
+        }
+        Source::Device(axis) => length(format!("device, {axis}"), format!("along {axis} of the device")),
+        Source::Range => {
+            length("line of sight".into(), "along the line of sight from the origin of {W}".into())
+        }
+        Source::Sight => angle(
+            "direction of sight".into(),
+            "of the direction in which the ball is seen from the origin of {W}".into(),
+        ),
     };
-    format!("{what} ({} % of its square)", significant(100.0 * own.share, 2))
+    Said { name, of, size, unit, key, share: own.share }
 }
 
-fn source(own: &ScatterSource) -> Value {
-    let (name, key, size) = match own.source {
-        Source::Written => ("written angles".to_owned(), "step_deg", own.size / DEG),
-        Source::Joints => ("all joints".to_owned(), "sd_urad", own.size / UM),
-        Source::Angle(joint) => (format!("joint {}", joint + 1), "sd_urad", own.size / UM),
-        Source::Way(joint) => (format!("joint {}", joint + 1), "sd_um", own.size / UM),
-        Source::Device(axis) => (format!("device, {axis}"), "sd_um", own.size / UM),
-        Source::Range => ("line of sight".to_owned(), "sd_um", own.size / UM),
-        Source::Sight => ("direction of sight".to_owned(), "sd_urad", own.size / UM),
-    };
-    json!({ "source": name, key: size, "share": own.share })
+fn of_every_axis(scatter: &ScatterSources) -> Said {
+    let (name, of) = ("every axis".into(), "along every axis".into());
+    Said { name, of, size: scatter.own / UM, unit: "µm", key: "sd_um", share: 1.0 }
 }
 
-fn everything_else(scatter: &ScatterSources) -> Value {
-    let share: f64 = scatter.sources.iter().map(|own| own.share).sum();
-    json!({ "source": "every axis", "sd_um": scatter.own / UM, "share": 1.0 - share })
+fn table(sources: &[Said]) -> Table {
+    let columns = vec![
+        Column::text("source of scatter"),
+        Column::number("standard deviation, or step", ""),
+        Column::text("unit"),
+        Column::number("share of the square", "%"),
+    ];
+    let caption = "What the scatter of the poses is made of, by the likeliest covariance.";
+    let mut table = Table::new("scatter", caption, columns);
+    for own in sources {
+        let size = if own.key == STEP { short(own.size) } else { significant(own.size, 2) };
+        table.row([own.name.clone(), size, own.unit.to_owned(), significant(100.0 * own.share, 2)]);
+    }
+    table
+}
+
+/// With two digits, without zeros behind the point.
+fn short(number: f64) -> String {
+    let digits = significant(number, 2);
+    match digits.contains('.') {
+        true => digits.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => digits,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spatial::Axis;
+
+    #[test]
+    fn every_source_has_its_words() {
+        let source = |source, size, share| ScatterSource { source, size, share };
+        let all = ScatterSources {
+            own: 20e-6,
+            sources: vec![
+                source(Source::Written, 0.05 * DEG, 0.3),
+                source(Source::Joints, 40e-6, 0.2),
+                source(Source::Angle(1), 99.4e-6, 0.1),
+                source(Source::Way(2), 31e-6, 0.1),
+                source(Source::Device(Axis::Z), 91e-6, 0.05),
+                source(Source::Range, 90e-6, 0.05),
+                source(Source::Sight, 12e-6, 0.05),
+            ],
+        };
+        let said = uneven(&all);
+        assert_eq!(
+            said.words,
+            "The scatter is made of steps of up to 0.05° that the angles are written in (30 % of its square), \
+             40 µrad of the angle of each joint (20 % of its square), 99 µrad of the angle of joint 2 (10 % of its \
+             square), 31 µm of the way of joint 3 (10 % of its square), 91 µm along z of the device (5.0 % of its \
+             square), 90 µm along the line of sight from the origin of {W} (5.0 % of its square), 12 µrad of the \
+             direction in which the ball is seen from the origin of {W} (5.0 % of its square), and of 20 µm along \
+             every axis; the poses count by it."
+        );
+        let first = &said.all[0];
+        assert!(first["source"] == "written angles" && first["share"] == 0.3, "{first}");
+        assert!((first["step_deg"].as_f64().unwrap() - 0.05).abs() < 1e-12, "{first}");
+        let last = &said.all[7];
+        assert!(last["source"] == "every axis" && (last["share"].as_f64().unwrap() - 0.15).abs() < 1e-9);
+        assert_eq!(said.table.unwrap().rows.len(), 8);
+    }
 }

@@ -42,6 +42,7 @@ pub fn uneven(found: &RigDiagnosis) -> Option<Uneven> {
         ),
         key: "sensors",
         all: Value::Array(sensors),
+        table: None,
     })
 }
 

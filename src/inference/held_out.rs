@@ -10,12 +10,13 @@ pub(in crate::inference) mod sessions;
 
 use nalgebra::DVector;
 
+use crate::inference::columns::background::folded;
 use crate::inference::columns::linearised::Linearised;
 use crate::inference::noise::whitening::Whitening;
 use crate::inference::score::priors::APART;
 use crate::inference::search::Search;
 use crate::inference::search::pruning::infer;
-use crate::inference::search::selection::Pairs;
+use crate::inference::search::selection::{DiscrepancyModel, Pairs};
 use crate::inference::{Candidate, Effect, Evidence, ForwardModel, Hypothesis, Kind, Term};
 use crate::parallel::in_parallel;
 use crate::statistics::{Random, percentile_interval};
@@ -262,6 +263,37 @@ pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence, whole: &[Term]) -> 
         errors_before,
         errors_after,
     })
+}
+
+/// Squares of all held-out data that given terms leave, fitted without them, or else what is found
+/// without them, with the curve that has no name; `None` with fewer than two folds.
+pub fn held_out_square(model: &dyn ForwardModel, evidence: &Evidence, terms: Option<&[Term]>) -> Option<f64> {
+    let evidence = &folded(&Evidence { stated_noise: None, ..evidence.clone() }).evidence;
+    let folds = evidence.folds();
+    if folds.len() < 2 {
+        return None;
+    }
+    let model = &Linearised::new(model).in_parts(evidence, &evidence.fold);
+    let of_fold = in_parallel(folds.len(), |k| {
+        let (held_out, kept): (Vec<usize>, Vec<usize>) =
+            (0..evidence.residual.len()).partition(|&row| evidence.fold[row] == folds[k]);
+        let (part, training) = (model.part(&kept, folds[k]), evidence.part(&kept));
+        let (search, fitted) = match terms {
+            Some(terms) => {
+                let search = Search::new(&part, &training, terms);
+                let fitted = search.fit(terms);
+                (search, fitted)
+            }
+            None => {
+                let (search, named, left_over) = infer(&part, &training, Pairs::LeftOut, None);
+                let whole = left_over.as_ref().and_then(DiscrepancyModel::curve).cloned();
+                (search, whole.unwrap_or(named))
+            }
+        };
+        let left = &evidence.residual - search.predicted(&fitted, evidence, &model.response(&fitted.terms));
+        held_out.iter().map(|&row| left[row].powi(2)).sum::<f64>()
+    });
+    Some(of_fold.iter().sum())
 }
 
 fn interval(squares: &[Squares]) -> Option<(f64, f64)> {

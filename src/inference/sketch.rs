@@ -42,9 +42,9 @@ pub struct Sketch {
     pub correlated_noise: Option<CorrelatedNoise>,
     /// Ln of the probability of all of it, but for a constant of the recording.
     pub log_probability: f64,
-    /// Share of the squares of what it leaves that belongs to something without a name; 0 where
-    /// there is nothing of that kind.
-    pub left_over: f64,
+    /// The hypothesis with the curve beside it that describes what is left and has no name, where
+    /// there is one; nothing where the repeats alone show it.
+    pub left_over: Option<Option<Hypothesis>>,
 }
 
 /// Of a recording whose `neighbours` nobody knows.
@@ -98,14 +98,7 @@ fn beside(
     };
     let left = &settled.residual - predicted;
     let log_probability = whole + search.whitening.log_jacobian();
-    let share_of = |longer: &Hypothesis| {
-        let rest = &settled.residual - search.predicted(longer, &settled, &model.response(&longer.terms));
-        1.0 - rest.norm_squared() / left.norm_squared().max(f64::MIN_POSITIVE)
-    };
-    let left_over = match &left_over {
-        None => 0.0,
-        Some(found) => found.curve().map_or(1.0, share_of).max(f64::MIN_POSITIVE),
-    };
+    let left_over = left_over.map(|found| found.curve().cloned());
     let none = &settled.residual - &settled.background * search.fit(&[]).background;
     (Sketch { left, hypothesis, correlated_noise, log_probability, left_over }, none)
 }

@@ -75,7 +75,7 @@ fn subject<'a>(found: &'a CalibrationDiagnosis<'_>) -> Subject<'a> {
         before_correction: model.recorded.map(|recorded| recorded.rms / 3.0f64.sqrt()),
         doubtful: doubtful(found),
         nominal: far_from_file(found),
-        uneven: model.scatter.as_ref().map(scatter::uneven),
+        uneven: model.scatter.as_ref().map(|own| scatter::uneven(own, diagnosis.lack_of_fit_after.is_some())),
         elsewhere,
         suspect: Box::new(|datum| {
             let row = &campaign.measurements.rows[datum / 3];

@@ -9,8 +9,9 @@
 //! (H. Zhou, L. Hu, J. Zhou, K. Lange, *J. Comput. Graph. Stat.* 28 (2019) 350–361.) The likeliest
 //! source is added, and then the next one, as long as each is worth its number. What follows
 //! something is an effect and no scatter: so the best answer beside such a covariance has to make
-//! the recording more probable than the best answer without it, and not only L; and nothing
-//! structured may be left beside it.
+//! the recording more probable than the best answer without it, and not only L; nothing structured
+//! may be left beside it; and where it has taken the place of something, what the other poses say
+//! of that must not foretell those that are held out.
 
 use nalgebra::{DVector, Matrix3, Vector3};
 
@@ -19,7 +20,7 @@ use super::super::model::covariance::{Covariance, Source};
 use super::prepared::{FirstLook, Prepared};
 use crate::calibration::campaign::Campaign;
 use crate::error::Result;
-use crate::inference::{Sketch, sketch};
+use crate::inference::{Candidate, ForwardModel, Sketch, Term, held_out_square, sketch};
 use crate::parallel::checkpoint;
 use crate::statistics::median;
 
@@ -34,8 +35,8 @@ const FAR: f64 = 6.0;
 /// Times that it is estimated; and ln of the ratio of two variances that are as good as the same.
 const ROUNDS: usize = 3;
 const ALIKE: f64 = 0.1;
-/// Share of the squares of what is left beyond which it follows something.
-const STRUCTURED: f64 = 0.6;
+/// Share of the squares of held-out poses that only something that is there foretells.
+const FORETOLD: f64 = 0.05;
 /// Least scatter that has sources, m: below it stand last digits.
 const LEAST: f64 = 1e-6;
 /// The largest scatter of an angle that is none, rad: arms repeat poses to a tenth of it. And how
@@ -63,9 +64,6 @@ pub fn scattered<'c>(
     plain: &Sketch,
     look: &FirstLook,
 ) -> Result<Option<Scattered<'c>>> {
-    if plain.left_over > STRUCTURED {
-        return Ok(None);
-    }
     let rank = prepared.model.calibration.fit.covariance.rank as f64;
     let mut best: Option<Scattered> = None;
     // what was found beside equal scatter has taken up some of it
@@ -87,7 +85,7 @@ pub fn scattered<'c>(
         let own = sketch(&beside.model, &beside.evidence);
         beside.evidence.correlated_noise = own.correlated_noise;
         // what is structured beside it as well is no scatter, and nobody knows which part of it is
-        if own.left_over > 0.0 || own.correlated_noise.is_some() {
+        if own.left_over.is_some() || own.correlated_noise.is_some() {
             return Ok(None);
         }
         let density: f64 = beside.context.weights().iter().map(|weight| weight.determinant().ln()).sum();
@@ -97,7 +95,28 @@ pub fn scattered<'c>(
         }
         best = Some(Scattered { prepared: beside, sketch: own, covariance, worth });
     }
-    Ok(best)
+    Ok(best.filter(|best| !foretells(prepared, plain, best)))
+}
+
+/// True where held-out poses are nearer to what was found beside equal scatter than to what is left
+/// of it beside a covariance: then that took something for scatter.
+fn foretells(prepared: &Prepared, plain: &Sketch, beside: &Scattered) -> bool {
+    let whole = plain.left_over.as_ref().map_or(Some(&plain.hypothesis), Option::as_ref);
+    let Some(whole) = whole else { return true };
+    let all = prepared.model.candidates();
+    let others = beside.prepared.model.candidates();
+    let same = |term: &Term| {
+        let own = &others[term.candidate];
+        let is_it = |known: &Candidate| known.effect == own.effect && known.location == own.location;
+        all.iter().position(is_it).map(|candidate| Term { candidate, ..term.clone() })
+    };
+    let kept: Vec<Term> = beside.sketch.hypothesis.terms.iter().filter_map(same).collect();
+    let is_kept = |term: &Term| kept.iter().any(|own| own.candidate == term.candidate);
+    if whole.terms.iter().all(is_kept) {
+        return false;
+    }
+    let square = |terms: Option<&[Term]>| held_out_square(&prepared.model, &prepared.evidence, terms);
+    square(None).zip(square(Some(&kept))).is_some_and(|(own, other)| own < (1.0 - FORETOLD) * other)
 }
 
 /// True of the same sources, each by about as much.

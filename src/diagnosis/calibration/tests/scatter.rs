@@ -110,6 +110,17 @@ fn what_follows_an_angle_is_no_scatter() {
     assert_eq!(found.model.scatter, None);
 }
 
+/// Nor is what follows two joints together, which no curve of the library describes to its end.
+#[test]
+fn what_foretells_held_out_poses_is_no_scatter() {
+    let surface = |q: &mut [f64], _: &mut Random| q[1] += 3e-4 * (2.0 * q[1]).sin() * (3.0 * q[2]).sin();
+    for seed in [17, 18] {
+        let campaign = seen(&surface, &in_place, seed);
+        let found = diagnose_as_recorded(&campaign, Mode::None, &Options::default()).unwrap();
+        assert!(found.diagnosis.is_mismatch() && found.model.scatter.is_none(), "{seed}");
+    }
+}
+
 /// Whitened columns and residuals are those of displacements: what the model says of a row in {W}
 /// is the same with and without.
 #[test]

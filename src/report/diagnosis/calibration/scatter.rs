@@ -8,8 +8,8 @@ use crate::report::diagnosis::subject::Uneven;
 use crate::report::table::{Column, Table};
 use crate::units::{DEG, UM, significant};
 
-/// As a sentence, as JSON and as a table.
-pub fn uneven(scatter: &ScatterSources) -> Uneven {
+/// As a sentence, as JSON and as a table; of poses that were repeated, or not.
+pub fn uneven(scatter: &ScatterSources, is_repeated: bool) -> Uneven {
     let all: Vec<Said> = scatter.sources.iter().map(said).collect();
     let parts: Vec<String> = all.iter().map(Said::words).collect();
     let rest = Said {
@@ -17,10 +17,18 @@ pub fn uneven(scatter: &ScatterSources) -> Uneven {
         ..of_every_axis(scatter)
     };
     let sources: Vec<Said> = all.into_iter().chain([rest]).collect();
+    let is_of_joint =
+        |own: &ScatterSource| matches!(own.source, Source::Joints | Source::Angle(_) | Source::Way(_));
+    let open = match scatter.sources.iter().any(is_of_joint) && !is_repeated {
+        true => {
+            " An error of the joints that no curve describes looks the same: poses measured twice would distinguish it."
+        }
+        false => "",
+    };
     Uneven {
         key: "sources",
         words: format!(
-            "The scatter is made of {}, and of {} µm along every axis; the poses count by it.",
+            "The scatter is made of {}, and of {} µm along every axis; the poses count by it.{open}",
             parts.join(", "),
             um(scatter.own)
         ),
@@ -136,7 +144,10 @@ mod tests {
                 source(Source::Sight, 12e-6, 0.05),
             ],
         };
-        let said = uneven(&all);
+        let end = "every axis; the poses count by it.";
+        let doubt = " An error of the joints that no curve describes looks the same: poses measured twice would distinguish it.";
+        assert!(uneven(&all, false).words.ends_with(&format!("{end}{doubt}")));
+        let said = uneven(&all, true);
         assert_eq!(
             said.words,
             "The scatter is made of steps of up to 0.05° that the angles are written in (30 % of its square), \

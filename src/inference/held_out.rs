@@ -267,7 +267,11 @@ pub fn hold_out(model: &Linearised<'_>, evidence: &Evidence, whole: &[Term]) -> 
 
 /// Squares of all held-out data that given terms leave, fitted without them, or else what is found
 /// without them, with the curve that has no name; `None` with fewer than two folds.
-pub fn held_out_square(model: &dyn ForwardModel, evidence: &Evidence, terms: Option<&[Term]>) -> Option<f64> {
+pub(crate) fn held_out_square(
+    model: &dyn ForwardModel,
+    evidence: &Evidence,
+    terms: Option<&[Term]>,
+) -> Option<f64> {
     let evidence = &folded(&Evidence { stated_noise: None, ..evidence.clone() }).evidence;
     let folds = evidence.folds();
     if folds.len() < 2 {

@@ -42,7 +42,7 @@ struct Said {
     /// As in the JSON and in the table.
     name: String,
     /// What comes after its size.
-    of: String,
+    after: String,
     /// Size in a unit, and the key of it.
     size: f64,
     unit: &'static str,
@@ -57,7 +57,7 @@ impl Said {
             STEP => format!("steps of up to {}°", short(self.size)),
             _ => format!("{} {}", significant(self.size, 2), self.unit),
         };
-        format!("{size} {} ({} % of its square)", self.of, significant(100.0 * self.share, 2))
+        format!("{size} {} ({} % of its square)", self.after, significant(100.0 * self.share, 2))
     }
 
     fn json(&self) -> Value {
@@ -69,9 +69,9 @@ impl Said {
 const STEP: &str = "step_deg";
 
 fn said(own: &ScatterSource) -> Said {
-    let angle = |name: String, of: String| (name, of, own.size / UM, "µrad", "sd_urad");
-    let length = |name: String, of: String| (name, of, own.size / UM, "µm", "sd_um");
-    let (name, of, size, unit, key) = match own.source {
+    let angle = |name: String, after: String| (name, after, own.size / UM, "µrad", "sd_urad");
+    let length = |name: String, after: String| (name, after, own.size / UM, "µm", "sd_um");
+    let (name, after, size, unit, key) = match own.source {
         Source::Written => {
             ("written angles".into(), "that the angles are written in".into(), own.size / DEG, "°", STEP)
         }
@@ -91,12 +91,12 @@ fn said(own: &ScatterSource) -> Said {
             "of the direction in which the ball is seen from the origin of {W}".into(),
         ),
     };
-    Said { name, of, size, unit, key, share: own.share }
+    Said { name, after, size, unit, key, share: own.share }
 }
 
 fn of_every_axis(scatter: &ScatterSources) -> Said {
-    let (name, of) = ("every axis".into(), "along every axis".into());
-    Said { name, of, size: scatter.own / UM, unit: "µm", key: "sd_um", share: 1.0 }
+    let (name, after) = ("every axis".into(), "along every axis".into());
+    Said { name, after, size: scatter.own / UM, unit: "µm", key: "sd_um", share: 1.0 }
 }
 
 fn table(sources: &[Said]) -> Table {

@@ -31,7 +31,23 @@ pub fn alike(
     noise: f64,
     is_predicted: &dyn Fn(usize) -> bool,
 ) -> Result<Vec<Vector3<f64>>> {
+    Ok(rows_alike(&basis(evidence, columns, noise)?, evidence.recorded / 3, left, is_predicted))
+}
+
+/// The same of what a fit of all that leaves, whatever was found before.
+pub fn fitted_alike(evidence: &Evidence, columns: &[DMatrix<f64>], noise: f64) -> Result<Vec<Vector3<f64>>> {
     let basis = basis(evidence, columns, noise)?;
+    let mut left = evidence.residual.clone().resize_vertically(basis.nrows(), 0.0);
+    left -= &basis * basis.tr_mul(&left);
+    Ok(rows_alike(&basis, evidence.recorded / 3, &left, &|_| false))
+}
+
+fn rows_alike(
+    basis: &DMatrix<f64>,
+    rows: usize,
+    left: &DVector<f64>,
+    is_predicted: &dyn Fn(usize) -> bool,
+) -> Vec<Vector3<f64>> {
     let row = |row: usize| {
         let own = basis.rows(3 * row, 3);
         let hat = Matrix3::from_fn(|i, j| own.row(i).dot(&own.row(j)));
@@ -42,7 +58,7 @@ pub fn alike(
         parts.eigenvectors
             * along.zip_map(&parts.eigenvalues, |along, own| along * own.max(LEAST).powf(power))
     };
-    Ok((0..evidence.recorded / 3).map(row).collect())
+    (0..rows).map(row).collect()
 }
 
 /// Orthonormal basis of all that is fitted: first what nobody knows beforehand, then what is known,

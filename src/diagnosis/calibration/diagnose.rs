@@ -15,6 +15,8 @@ pub mod scatter;
 pub mod sides;
 pub mod tails;
 
+use nalgebra::Vector3;
+
 use self::arrival::unknown_arrival;
 use self::beside::{calibrated_beside, unequal};
 use self::coarse_angles::coarse_angles;
@@ -97,10 +99,10 @@ pub fn diagnose_calibrated<'c>(
     let mut prepared = Prepared::new(campaign, calibration)?;
     let mut look = FirstLook::default();
     let mut may_hide_masses = false;
-    for _ in 0..ROUNDS {
+    for round in 0..ROUNDS {
         let mut seen = sketch(&prepared.model, &prepared.evidence);
-        if look.covariance.is_none()
-            && look.scatter.is_none()
+        // once is enough: a search beside it takes as long as the one before
+        if round == 0
             && let Some(by_source) = scattered(campaign, &prepared, &seen, &look)?
         {
             (prepared, seen, look.covariance) =
@@ -204,6 +206,10 @@ fn complete(found: &mut CalibrationDiagnosis) {
     let wholes: Vec<Vec<Estimate>> =
         found.diagnosis.findings.iter().map(|finding| found.whole_error(finding)).collect();
     let CalibrationDiagnosis { model, diagnosis, .. } = found;
+    if let Some(left) = &mut diagnosis.discrepancy {
+        // of displacements, not of data that rows count for more or less
+        left.rms = rms_by_coordinate(&model.by_row(&left.shape));
+    }
     for (finding, whole) in diagnosis.findings.iter_mut().zip(wholes) {
         finding.written_to = destination(finding, model);
         finding.estimates.extend(whole);
@@ -212,6 +218,12 @@ fn complete(found: &mut CalibrationDiagnosis) {
             part.estimates.extend(gear.frequencies(part, &model.angles(gear.joint())));
         }
     }
+}
+
+/// Root mean square of a coordinate of displacements, m.
+fn rms_by_coordinate(rows: &[Vector3<f64>]) -> f64 {
+    let squares: f64 = rows.iter().map(|row| row.norm_squared()).sum();
+    (squares / (3 * rows.len()).max(1) as f64).sqrt()
 }
 
 /// Rows, from 0, after which something has moved, where not every row was looked at.
@@ -252,9 +264,7 @@ impl CalibrationDiagnosis<'_> {
 
     /// Root mean square of a coordinate of what the findings leave of the poses, m.
     pub fn left_by_coordinate(&self) -> f64 {
-        let rows = self.model.by_row(&self.diagnosis.after);
-        let squares: f64 = rows.iter().map(|row| row.norm_squared()).sum();
-        (squares / (3 * rows.len()).max(1) as f64).sqrt()
+        rms_by_coordinate(&self.model.by_row(&self.diagnosis.after))
     }
 
     /// All that was found of a joint's gear, joints counted from 0; `None` where nothing was.

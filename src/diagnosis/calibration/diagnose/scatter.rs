@@ -12,11 +12,12 @@
 //! each is worth its number. What follows something is an effect and no scatter: so the best answer
 //! beside such a covariance has to make the recording more probable than the best answer without
 //! it, and not only L; nothing structured may be left beside it; and where it has taken the place
-//! of something, what the other poses say of that must not foretell those that are held out.
+//! of something, what the other poses say of that must not predict those that are held out.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use super::super::model::Context;
+use super::super::model::calibration_model::undone;
 use super::super::model::covariance::{Covariance, Source};
 use super::leverage::{alike, fitted_alike};
 use super::prepared::{FirstLook, Prepared};
@@ -26,7 +27,7 @@ use crate::inference::{Candidate, Evidence, ForwardModel, Sketch, Term, held_out
 use crate::parallel::checkpoint;
 use crate::statistics::median;
 
-/// Most sources that are told apart.
+/// Most sources that are distinguished.
 const MOST_SOURCES: usize = 3;
 /// Rows that are looked at, from all over the recording.
 const MOST_ROWS: usize = 2000;
@@ -39,8 +40,8 @@ const FAR: f64 = 6.0;
 const ROUNDS: usize = 3;
 const REFITS: usize = 12;
 const ALIKE: f64 = 0.05;
-/// Share of the squares of held-out poses that only something that is there foretells.
-const FORETOLD: f64 = 0.05;
+/// Share of the squares of held-out poses that only something that is there predicts.
+const PREDICTED: f64 = 0.05;
 /// Least scatter that has sources, m: below it stand last digits.
 const LEAST: f64 = 1e-6;
 /// The largest scatter of an angle that is none, rad: arms repeat poses to a tenth of it. And how
@@ -81,8 +82,9 @@ pub fn scattered<'c>(
             break;
         }
         let Some((mut covariance, mut price)) = likeliest(&prepared.context, &left) else { break };
-        // a fit of rows that count alike takes up more of what scatters along few directions
-        for _ in 0..REFITS {
+        // a fit of rows that count alike takes up more of what scatters along few directions; it is
+        // worth its time where there is such scatter at all
+        for _ in 0..if best.is_some() { REFITS } else { 0 } {
             let left = of_rows_refitted(about, sketched, &covariance.weights(&prepared.context))?;
             let Some((again, own)) = likeliest(&prepared.context, &left) else { break };
             let is_settled = is_alike(&again, &covariance);
@@ -110,7 +112,7 @@ pub fn scattered<'c>(
         }
         best = Some(Scattered { prepared: beside, sketch: own, covariance, worth });
     }
-    Ok(best.filter(|best| !foretells(prepared, plain, best)))
+    Ok(best.filter(|best| !predicts(prepared, plain, best)))
 }
 
 /// What an answer leaves of each row, m in {W}, as if nothing had been fitted to it.
@@ -130,7 +132,6 @@ fn of_rows_refitted(
     sketched: &Sketch,
     weights: &[Matrix3<f64>],
 ) -> Result<Vec<Vector3<f64>>> {
-    let undone = |weight: &Matrix3<f64>| weight.try_inverse().unwrap_or_else(Matrix3::zeros);
     let turns: Vec<Matrix3<f64>> =
         weights.iter().enumerate().map(|(row, weight)| weight * undone(&about.model.weight(row))).collect();
     let turned = |mut all: DMatrix<f64>| {
@@ -152,7 +153,7 @@ fn of_rows_refitted(
 
 /// True where held-out poses are nearer to what was found beside equal scatter than to what is left
 /// of it beside a covariance: then that took something for scatter.
-fn foretells(prepared: &Prepared, plain: &Sketch, beside: &Scattered) -> bool {
+fn predicts(prepared: &Prepared, plain: &Sketch, beside: &Scattered) -> bool {
     let whole = plain.left_over.as_ref().map_or(Some(&plain.hypothesis), Option::as_ref);
     let Some(whole) = whole else { return true };
     let all = prepared.model.candidates();
@@ -168,7 +169,7 @@ fn foretells(prepared: &Prepared, plain: &Sketch, beside: &Scattered) -> bool {
         return false;
     }
     let square = |terms: Option<&[Term]>| held_out_square(&prepared.model, &prepared.evidence, terms);
-    square(None).zip(square(Some(&kept))).is_some_and(|(own, other)| own < (1.0 - FORETOLD) * other)
+    square(None).zip(square(Some(&kept))).is_some_and(|(own, other)| own < (1.0 - PREDICTED) * other)
 }
 
 /// True of the same sources, each by about as much.
@@ -237,8 +238,8 @@ fn is_plausible(context: &Context, covariance: &Covariance) -> bool {
     covariance.sources.iter().all(|&(source, v)| match source {
         Source::Written => true,
         Source::Joints | Source::Angle(_) => v < MOST_ANGLE.powi(2),
-        Source::Way(_) | Source::Device(_) | Source::Range => v < MOST_TIMES.powi(2) * covariance.own,
-        Source::Sight => v * distance.powi(2) < MOST_TIMES.powi(2) * covariance.own,
+        Source::Position(_) | Source::Device(_) | Source::Distance => v < MOST_TIMES.powi(2) * covariance.own,
+        Source::Direction => v * distance.powi(2) < MOST_TIMES.powi(2) * covariance.own,
     })
 }
 

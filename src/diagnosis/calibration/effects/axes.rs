@@ -103,9 +103,9 @@ fn axes_observed(finding: &Finding, _: &CalibrationModel) -> String {
             return format!("{a} and {b} are {} from square", number.size().with_unit("µrad"));
         }
         let axis = SCALES.iter().position(|name| *name == own.name).unwrap_or_default();
-        let word = if number.value < 0.0 { "little" } else { "much" };
-        format!("{} shows {} too {word}", Axis::ALL[axis], number.size().with_unit("µm/m"))
+        let word = if number.value < 0.0 { "small" } else { "large" };
+        format!("the scale along {} is {} too {word}", Axis::ALL[axis], number.size().with_unit("µm/m"))
     };
     let all: Vec<String> = finding.estimates.iter().map(of_number).collect();
-    format!("Of the axes of the measuring device, {}", all.join(", "))
+    format!("On the measuring device, {}", all.join(", "))
 }

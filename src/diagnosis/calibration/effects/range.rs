@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::super::model::CalibrationModel;
+use super::super::model::configuration::sight;
 use super::super::model::entry::linear;
 use super::{
     CalibrationEffect, Context, Entry, Transfer, first, first_value, lack, no_event, out_of_what_is_shown,
@@ -64,10 +65,6 @@ fn is_outside(context: &Context) -> bool {
     let seen: Vec<Vector3<f64>> = context.configurations.iter().map(|there| sight(&there.tip)).collect();
     let middle = sight(&seen.iter().sum());
     seen.iter().all(|seen| seen.dot(&middle) > OUTSIDE)
-}
-
-fn sight(point: &Vector3<f64>) -> Vector3<f64> {
-    point.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector3::zeros)
 }
 
 fn write_offset(finding: &Finding, model: &CalibrationModel, extended: &mut Campaign) -> WrittenTo {

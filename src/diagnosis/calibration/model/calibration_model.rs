@@ -59,9 +59,7 @@ impl CalibrationModel<'_> {
 
     /// Of numbers by datum the displacement of each row in {W}, m: for residuals and responses.
     pub fn by_row(&self, data: &DVector<f64>) -> Vec<Vector3<f64>> {
-        // a row that counts nothing says nothing
-        let undone = |row: usize| self.weight(row).try_inverse().unwrap_or_else(Matrix3::zeros);
-        let row = |row: usize| undone(row) * data.fixed_rows::<3>(3 * row);
+        let row = |row: usize| undone(&self.weight(row)) * data.fixed_rows::<3>(3 * row);
         (0..self.tip_jacobians.len()).map(row).collect()
     }
 
@@ -88,4 +86,9 @@ impl CalibrationModel<'_> {
         let recording = &self.campaign.measurements;
         (0..recording.len()).map(|row| recording.joints(row)[joint]).collect()
     }
+}
+
+/// The inverse of what a row counts: one that counts nothing says nothing.
+pub fn undone(weight: &Matrix3<f64>) -> Matrix3<f64> {
+    weight.try_inverse().unwrap_or_else(Matrix3::zeros)
 }

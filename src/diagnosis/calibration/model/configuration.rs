@@ -169,3 +169,8 @@ fn at_axes(
     });
     at.collect()
 }
+
+/// The direction in which a device in the origin of {W} sees a point; zero for that origin itself.
+pub fn sight(point: &Vector3<f64>) -> Vector3<f64> {
+    point.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector3::zeros)
+}

@@ -14,7 +14,8 @@
 
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-use super::{Configuration, Context};
+use super::Context;
+use super::configuration::sight;
 use crate::robot::Motion;
 use crate::spatial::Axis;
 
@@ -28,14 +29,14 @@ pub enum Source {
     Joints,
     /// The angle of one joint from 0, rad.
     Angle(usize),
-    /// The way of one that slides, from 0, m.
-    Way(usize),
+    /// The position of one that slides, from 0, m.
+    Position(usize),
     /// What the device shows along an axis of its own, m.
     Device(Axis),
-    /// How far the device sees the ball, m.
-    Range,
-    /// In which direction it sees it, rad.
-    Sight,
+    /// The distance at which a device in the origin of {W} sees the ball, m.
+    Distance,
+    /// The direction in which it sees it, rad.
+    Direction,
 }
 
 /// s², m², and v of each source: of [`Source::Written`] 1.
@@ -118,13 +119,13 @@ impl Source {
         }
         all.extend(context.motions.iter().enumerate().map(|(joint, motion)| match motion {
             Motion::Revolute => Source::Angle(joint),
-            Motion::Prismatic => Source::Way(joint),
+            Motion::Prismatic => Source::Position(joint),
         }));
         if !context.has_sockets() {
             all.extend(Axis::ALL.map(Source::Device));
         }
         if context.is_tracked() {
-            all.extend([Source::Range, Source::Sight]);
+            all.extend([Source::Distance, Source::Direction]);
         }
         all
     }
@@ -143,22 +144,17 @@ impl Source {
                 .map(|(joint, step)| turned(joint, step * step / 12.0))
                 .sum(),
             Source::Joints => context.revolute().into_iter().map(|joint| turned(joint, 1.0)).sum(),
-            Source::Angle(joint) | Source::Way(joint) => turned(joint, 1.0),
+            Source::Angle(joint) | Source::Position(joint) => turned(joint, 1.0),
             Source::Device(axis) => {
                 along(context.recording.device(row).rotation.column(axis.index()).into_owned())
             }
-            Source::Range => along(sight(there)),
-            Source::Sight => {
+            Source::Distance => along(sight(&there.tip)),
+            Source::Direction => {
                 let p = there.tip;
                 Matrix3::identity() * p.norm_squared() - along(p)
             }
         }
     }
-}
-
-/// The direction in which a device at the origin of {W} sees the ball.
-fn sight(there: &Configuration) -> Vector3<f64> {
-    there.tip.try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector3::zeros)
 }
 
 /// Mean of tr C/3.

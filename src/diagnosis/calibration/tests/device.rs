@@ -29,7 +29,7 @@ fn axes_of_a_device_are_unequal_or_oblique() {
     let (place, [low, value, high], said) = only(&|tip| Vector3::y() * (-5e-4 * tip.y));
     assert_eq!(place, "device_axes tracker, scale along y");
     assert!(low < -500.0 && -500.0 < high && high - low < 150.0, "{low} {value} {high}");
-    assert!(said.contains("y shows ") && said.contains(" µm/m too little: "), "{said}");
+    assert!(said.contains("the scale along y is ") && said.contains(" µm/m too small: "), "{said}");
     let (place, [low, value, high], said) = only(&|tip| Vector3::new(2.5e-4 * tip.z, 0.0, 2.5e-4 * tip.x));
     assert_eq!(place, "device_axes tracker, z and x not square");
     assert!(low < 500.0 && 500.0 < high && high - low < 150.0, "{low} {value} {high}");
@@ -40,7 +40,7 @@ fn axes_of_a_device_are_unequal_or_oblique() {
         place.starts_with("device_axes tracker, scale along x") && place.contains("not square"),
         "{place}"
     );
-    assert!(said.contains("x shows ") && said.contains("x and y are "), "{said}");
+    assert!(said.contains("the scale along x is ") && said.contains("x and y are "), "{said}");
 }
 
 /// Longer links show the same.

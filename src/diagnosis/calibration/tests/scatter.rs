@@ -84,12 +84,12 @@ fn a_device_may_see_one_direction_worse() {
     assert!(source == Source::Device(Axis::Z) && (size / (90.0 * UM) - 1.0).abs() < 0.2, "{source:?} {size}");
     let range = |tip: &Vector3<f64>, random: &mut Random| tip.normalize() * (90.0 * UM * random.normal());
     let (source, size, _) = only(&seen(&as_it_is, &range, 7));
-    assert!(source == Source::Range && (size / (90.0 * UM) - 1.0).abs() < 0.2, "{source:?} {size}");
+    assert!(source == Source::Distance && (size / (90.0 * UM) - 1.0).abs() < 0.2, "{source:?} {size}");
     let sight = |tip: &Vector3<f64>, random: &mut Random| {
         tip.cross(&Vector3::from_fn(|_, _| 30e-6 * random.normal()))
     };
     let (source, size, _) = only(&seen(&as_it_is, &sight, 8));
-    assert!(source == Source::Sight && (size / 30e-6 - 1.0).abs() < 0.2, "{source:?} {size}");
+    assert!(source == Source::Direction && (size / 30e-6 - 1.0).abs() < 0.2, "{source:?} {size}");
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn what_follows_an_angle_is_no_scatter() {
 
 /// Nor is what follows two joints together, which no curve of the library describes to its end.
 #[test]
-fn what_foretells_held_out_poses_is_no_scatter() {
+fn what_predicts_held_out_poses_is_no_scatter() {
     let surface = |q: &mut [f64], _: &mut Random| q[1] += 3e-4 * (2.0 * q[1]).sin() * (3.0 * q[2]).sin();
     for seed in [17, 18] {
         let campaign = seen(&surface, &in_place, seed);
@@ -163,6 +163,6 @@ fn a_step_is_seen_in_the_angles_of_joints_that_move() {
     let motions = [Motion::Revolute, Motion::Revolute, Motion::Prismatic];
     let steps = model::written_angles::written_steps(&recording, &motions);
     assert!((steps[0] / (0.05 * DEG) - 1.0).abs() < 1e-9, "{steps:?}");
-    // one that stands still is off by the same everywhere, and a way is no angle
+    // one that stands still is off by the same everywhere, and one that slides has no angle
     assert_eq!(steps[1..], [0.0, 0.0]);
 }

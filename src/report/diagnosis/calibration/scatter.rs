@@ -18,17 +18,18 @@ pub fn uneven(scatter: &ScatterSources, is_repeated: bool) -> Uneven {
     };
     let sources: Vec<Said> = all.into_iter().chain([rest]).collect();
     let is_of_joint =
-        |own: &ScatterSource| matches!(own.source, Source::Joints | Source::Angle(_) | Source::Way(_));
+        |own: &ScatterSource| matches!(own.source, Source::Joints | Source::Angle(_) | Source::Position(_));
     let open = match scatter.sources.iter().any(is_of_joint) && !is_repeated {
         true => {
-            " An error of the joints that no curve describes looks the same: poses measured twice would distinguish it."
+            " An error of the joints that no curve describes would look the same: record some poses twice to \
+             distinguish the two."
         }
         false => "",
     };
     Uneven {
         key: "sources",
         words: format!(
-            "The scatter is made of {}, and of {} µm along every axis; the poses count by it.{open}",
+            "The scatter comes from {}, and from all axes alike ({} µm); each pose is weighted accordingly.{open}",
             parts.join(", "),
             um(scatter.own)
         ),
@@ -41,8 +42,8 @@ pub fn uneven(scatter: &ScatterSources, is_repeated: bool) -> Uneven {
 struct Said {
     /// As in the JSON and in the table.
     name: String,
-    /// What comes after its size.
-    after: String,
+    /// As in a sentence.
+    source: String,
     /// Size in a unit, and the key of it.
     size: f64,
     unit: &'static str,
@@ -51,13 +52,13 @@ struct Said {
 }
 
 impl Said {
-    /// For example `99 µrad of the angle of joint 2 (84 % of its square)`.
+    /// For example `the angle of joint 2 (99 µrad, 84 % of the variance)`.
     fn words(&self) -> String {
         let size = match self.key {
-            STEP => format!("steps of up to {}°", short(self.size)),
+            STEP => format!("up to {}°", short(self.size)),
             _ => format!("{} {}", significant(self.size, 2), self.unit),
         };
-        format!("{size} {} ({} % of its square)", self.after, significant(100.0 * self.share, 2))
+        format!("{} ({size}, {} % of the variance)", self.source, significant(100.0 * self.share, 2))
     }
 
     fn json(&self) -> Value {
@@ -69,34 +70,37 @@ impl Said {
 const STEP: &str = "step_deg";
 
 fn said(own: &ScatterSource) -> Said {
-    let angle = |name: String, after: String| (name, after, own.size / UM, "µrad", "sd_urad");
-    let length = |name: String, after: String| (name, after, own.size / UM, "µm", "sd_um");
-    let (name, after, size, unit, key) = match own.source {
-        Source::Written => {
-            ("written angles".into(), "that the angles are written in".into(), own.size / DEG, "°", STEP)
-        }
-        Source::Joints => angle("all joints".into(), "of the angle of each joint".into()),
-        Source::Angle(joint) => {
-            angle(format!("joint {}", joint + 1), format!("of the angle of joint {}", joint + 1))
-        }
-        Source::Way(joint) => {
-            length(format!("joint {}", joint + 1), format!("of the way of joint {}", joint + 1))
-        }
-        Source::Device(axis) => length(format!("device, {axis}"), format!("along {axis} of the device")),
-        Source::Range => {
-            length("line of sight".into(), "along the line of sight from the origin of {W}".into())
-        }
-        Source::Sight => angle(
-            "direction of sight".into(),
-            "of the direction in which the ball is seen from the origin of {W}".into(),
+    let angle = |name: String, source: String| (name, source, own.size / UM, "µrad", "sd_urad");
+    let length = |name: String, source: String| (name, source, own.size / UM, "µm", "sd_um");
+    let (name, source, size, unit, key) = match own.source {
+        Source::Written => (
+            "written angles".into(),
+            "the steps that the angles are written in".into(),
+            own.size / DEG,
+            "°",
+            STEP,
         ),
+        Source::Joints => angle("all joints".into(), "the angles of all joints".into()),
+        Source::Angle(joint) => {
+            angle(format!("joint {}", joint + 1), format!("the angle of joint {}", joint + 1))
+        }
+        Source::Position(joint) => {
+            length(format!("joint {}", joint + 1), format!("the position of joint {}", joint + 1))
+        }
+        Source::Device(axis) => length(format!("device, {axis}"), format!("the device along {axis}")),
+        Source::Distance => {
+            length("distance".into(), "the distance that the device in the origin of {W} shows".into())
+        }
+        Source::Direction => {
+            angle("direction".into(), "the direction that the device in the origin of {W} shows".into())
+        }
     };
-    Said { name, after, size, unit, key, share: own.share }
+    Said { name, source, size, unit, key, share: own.share }
 }
 
 fn of_every_axis(scatter: &ScatterSources) -> Said {
-    let (name, after) = ("every axis".into(), "along every axis".into());
-    Said { name, after, size: scatter.own / UM, unit: "µm", key: "sd_um", share: 1.0 }
+    let (name, source) = ("every axis".into(), "all axes alike".into());
+    Said { name, source, size: scatter.own / UM, unit: "µm", key: "sd_um", share: 1.0 }
 }
 
 fn table(sources: &[Said]) -> Table {
@@ -104,7 +108,7 @@ fn table(sources: &[Said]) -> Table {
         Column::text("source of scatter"),
         Column::number("standard deviation, or step", ""),
         Column::text("unit"),
-        Column::number("share of the square", "%"),
+        Column::number("share of the variance", "%"),
     ];
     let caption = "What the scatter of the poses is made of, by the likeliest covariance.";
     let mut table = Table::new("scatter", caption, columns);
@@ -138,24 +142,24 @@ mod tests {
                 source(Source::Written, 0.05 * DEG, 0.3),
                 source(Source::Joints, 40e-6, 0.2),
                 source(Source::Angle(1), 99.4e-6, 0.1),
-                source(Source::Way(2), 31e-6, 0.1),
+                source(Source::Position(2), 31e-6, 0.1),
                 source(Source::Device(Axis::Z), 91e-6, 0.05),
-                source(Source::Range, 90e-6, 0.05),
-                source(Source::Sight, 12e-6, 0.05),
+                source(Source::Distance, 90e-6, 0.05),
+                source(Source::Direction, 12e-6, 0.05),
             ],
         };
-        let end = "every axis; the poses count by it.";
-        let doubt = " An error of the joints that no curve describes looks the same: poses measured twice would distinguish it.";
+        let end = "(20 µm); each pose is weighted accordingly.";
+        let doubt = " An error of the joints that no curve describes would look the same: record some poses twice to distinguish the two.";
         assert!(uneven(&all, false).words.ends_with(&format!("{end}{doubt}")));
         let said = uneven(&all, true);
         assert_eq!(
             said.words,
-            "The scatter is made of steps of up to 0.05° that the angles are written in (30 % of its square), \
-             40 µrad of the angle of each joint (20 % of its square), 99 µrad of the angle of joint 2 (10 % of its \
-             square), 31 µm of the way of joint 3 (10 % of its square), 91 µm along z of the device (5.0 % of its \
-             square), 90 µm along the line of sight from the origin of {W} (5.0 % of its square), 12 µrad of the \
-             direction in which the ball is seen from the origin of {W} (5.0 % of its square), and of 20 µm along \
-             every axis; the poses count by it."
+            "The scatter comes from the steps that the angles are written in (up to 0.05°, 30 % of the variance), \
+             the angles of all joints (40 µrad, 20 % of the variance), the angle of joint 2 (99 µrad, 10 % of the \
+             variance), the position of joint 3 (31 µm, 10 % of the variance), the device along z (91 µm, 5.0 % of \
+             the variance), the distance that the device in the origin of {W} shows (90 µm, 5.0 % of the variance), \
+             the direction that the device in the origin of {W} shows (12 µrad, 5.0 % of the variance), and from \
+             all axes alike (20 µm); each pose is weighted accordingly."
         );
         let first = &said.all[0];
         assert!(first["source"] == "written angles" && first["share"] == 0.3, "{first}");

@@ -44,9 +44,10 @@ const ALIKE: f64 = 0.05;
 const PREDICTED: f64 = 0.05;
 /// Least scatter that has sources, m: below it stand last digits.
 const LEAST: f64 = 1e-6;
-/// The largest scatter of an angle that is none, rad: arms repeat poses to a tenth of it. And how
-/// many times as much a device may scatter along one axis as along the others.
-const MOST_ANGLE: f64 = 500e-6;
+/// The largest scatter of an angle, rad: 0.1 mm a metre away, and hardly an arm repeats its poses
+/// less well. More of it is something that nobody looks for. And how many times as much a device
+/// may scatter along one axis as along the others.
+const MOST_ANGLE: f64 = 100e-6;
 const MOST_TIMES: f64 = 10.0;
 /// Steps to the likeliest variances, how often one is halved, and the growth of ln L below which
 /// they end.

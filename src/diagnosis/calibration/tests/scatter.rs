@@ -53,7 +53,7 @@ fn in_place(_: &Vector3<f64>, _: &mut Random) -> Vector3<f64> {
 
 #[test]
 fn a_joint_that_scatters_is_no_wave_of_its_gear() {
-    for (seed, joint, sd) in [(1, 1, 120e-6), (2, 3, 250e-6)] {
+    for (seed, joint, sd) in [(1, 1, 80e-6), (2, 2, 90e-6)] {
         let scatters = |q: &mut [f64], random: &mut Random| q[joint] += sd * random.normal();
         let (source, size, own) = only(&seen(&scatters, &in_place, seed));
         assert_eq!(source, Source::Angle(joint));
@@ -92,6 +92,18 @@ fn a_device_may_see_one_direction_worse() {
     assert!(source == Source::Direction && (size / 30e-6 - 1.0).abs() < 0.2, "{source:?} {size}");
 }
 
+/// No arm repeats its poses so badly, and no device sees one axis so much worse.
+#[test]
+fn what_is_too_much_for_scatter_is_none() {
+    let scatter = |campaign: Campaign| {
+        diagnose_as_recorded(&campaign, Mode::None, &Options::default()).unwrap().model.scatter
+    };
+    let joint = |q: &mut [f64], random: &mut Random| q[1] += 300e-6 * random.normal();
+    assert_eq!(scatter(seen(&joint, &in_place, 1)), None);
+    let depth = |_: &Vector3<f64>, random: &mut Random| Vector3::z() * (500.0 * UM * random.normal());
+    assert_eq!(scatter(seen(&as_it_is, &depth, 6)), None);
+}
+
 #[test]
 fn what_scatters_alike_along_every_axis_has_no_source() {
     for seed in 10..14 {
@@ -113,8 +125,8 @@ fn what_follows_an_angle_is_no_scatter() {
 /// Nor is what follows two joints together, which no curve of the library describes to its end.
 #[test]
 fn what_predicts_held_out_poses_is_no_scatter() {
-    let surface = |q: &mut [f64], _: &mut Random| q[1] += 3e-4 * (2.0 * q[1]).sin() * (3.0 * q[2]).sin();
-    for seed in [17, 18] {
+    let surface = |q: &mut [f64], _: &mut Random| q[1] += 1.5e-4 * (3.0 * q[1]).sin() * (4.0 * q[2]).sin();
+    for seed in [17, 19, 21] {
         let campaign = seen(&surface, &in_place, seed);
         let found = diagnose_as_recorded(&campaign, Mode::None, &Options::default()).unwrap();
         assert!(found.diagnosis.is_mismatch() && found.model.scatter.is_none(), "{seed}");
@@ -125,7 +137,7 @@ fn what_predicts_held_out_poses_is_no_scatter() {
 /// is the same with and without.
 #[test]
 fn whitening_changes_no_displacement() {
-    let campaign = seen(&|q, random| q[1] += 200e-6 * random.normal(), &in_place, 16);
+    let campaign = seen(&|q, random| q[1] += 80e-6 * random.normal(), &in_place, 16);
     let found = diagnose_as_recorded(&campaign, Mode::None, &Options::default()).unwrap();
     let whitened = &found.model;
     assert!(whitened.scatter.is_some() && whitened.weight(0) != Matrix3::identity());

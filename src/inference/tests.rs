@@ -55,6 +55,7 @@ impl Columns {
             parameters: vec![parameter; columns.ncols()],
             weight: 1.0,
             is_alternative: false,
+            opposite: None,
             is_nonparametric,
         });
         self.columns.push(columns);

@@ -5,6 +5,8 @@ pub mod chronicle;
 pub mod columns;
 pub mod datum;
 pub mod evidence;
+mod multiples;
 pub mod resolution;
 mod rezeroed;
+mod settings;
 pub mod spread;

@@ -3,6 +3,7 @@
 
 mod files;
 mod geometry;
+mod imposed;
 mod load;
 mod named;
 mod reading;

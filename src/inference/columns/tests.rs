@@ -36,6 +36,7 @@ fn recording(count: usize) -> Recording {
         parameters: vec![parameter.clone(); parameters],
         weight: 1.0,
         is_alternative: false,
+        opposite: None,
         is_nonparametric: false,
     };
     let mut candidates = vec![candidate(2), candidate(1), candidate(1)];

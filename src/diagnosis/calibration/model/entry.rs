@@ -101,6 +101,7 @@ impl Entry {
             parameters,
             weight: 1.0,
             is_alternative: false,
+            opposite: None,
             is_nonparametric: false,
         };
         Entry { candidate, law: Law::Only, columns }

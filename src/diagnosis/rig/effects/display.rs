@@ -1,13 +1,16 @@
 //! What a display makes of a displacement that came by another one: play of a stylus, lag.
 
 use super::entry::{
-    Context, Entry, RigEffect, Usual, alternative, candidate, of_action, out_of_the_readings, parameter, size,
+    Context, Entry, RigEffect, Usual, alternative, candidate, number, of_action, out_of_the_readings,
+    parameter, size,
 };
+use super::load::FRICTION;
 use super::places::measured_channels;
 use crate::diagnosis::rig::mechanics::action::Action;
 use crate::diagnosis::rig::mechanics::display::{Display, Follows};
+use crate::diagnosis::rig::recording::datum::Datum;
 use crate::inference::{Candidate, Effect, Kind, Location, Part, Reported, Variable, WrittenTo};
-use crate::spatial::Axis;
+use crate::units::UM;
 
 /// Play of a stylus, a lever or a dial as a share of the largest reading.
 const PLAY: f64 = 0.01;
@@ -47,13 +50,11 @@ pub static SENSOR_LAG: RigEffect = RigEffect {
     usual: &[Usual::Share(PLAY), Usual::Share(LAG)],
     needs_rod: true,
     candidates: displays,
-    missing: |context| match context.data.iter().any(|d| d.imposed.is_some()) {
-        true => "the displacement was imposed",
-        false => "no unloading was recorded",
-    },
+    missing: |_| "no unloading was recorded",
     observed: |finding, model| {
         let display = match &finding.location {
             Location::Channel { channel, .. } => format!("Display d{channel}"),
+            _ if model.per_newton().is_some() => "The load cell".to_owned(),
             _ => "Every display".to_owned(),
         };
         let is_late = |action: &Action| match action {
@@ -66,7 +67,12 @@ pub static SENSOR_LAG: RigEffect = RigEffect {
                 format!("{display} lags: {share} of each change of the load is not shown yet when it is read")
             }
             None => {
-                let play = size(finding, "play_um", "µm");
+                let play = match model.per_newton() {
+                    None => size(finding, "play_um", "µm"),
+                    Some(per_newton) => {
+                        number(finding, "play_um").map(|play| play * UM / per_newton).size().with_unit("N")
+                    }
+                };
                 format!("{display} follows the rod only after a play of {play}")
             }
         }
@@ -74,13 +80,15 @@ pub static SENSOR_LAG: RigEffect = RigEffect {
     write: out_of_the_readings,
 };
 
-/// All displays alike, and each by itself, in each form. Nothing where no load is taken off again:
-/// what is missing then is an offset.
+/// All displays alike, and each by itself, in each form; where displacements were imposed, the load
+/// cell, whose load is what is compared. Nothing where no load is taken off again: what is missing
+/// then is an offset.
 fn displays(context: &mut Context) -> Vec<Entry> {
     let data = context.data;
-    if data.iter().any(|d| d.imposed.is_some()) || !data.iter().any(|d| d.is_unloading()) {
+    if !data.iter().any(|d| d.is_unloading()) {
         return Vec::new();
     }
+    let is_imposed = data.iter().any(|d| d.imposed.is_some());
     let largest = context.largest_reading();
     let play = || parameter("play_um", 0.0, PLAY * largest, (0.0, MOST_PLAY * largest));
     let lag = || parameter("fraction", 0.0, LAG, (0.0, MOST_LAG));
@@ -92,20 +100,22 @@ fn displays(context: &mut Context) -> Vec<Entry> {
     let channels = measured_channels(data);
     let mut entries = Vec::new();
     for ((form, follows, usual), often) in forms.into_iter().zip(OFTEN) {
-        let mut add = |location: Location, weight: f64, is_its: &dyn Fn(Axis) -> bool| {
-            let display = Display::of(data, follows, |d| is_its(d.channel));
+        let mut add = |location: Location, weight: f64, is_its: &dyn Fn(&Datum) -> bool| {
+            let display = Display::of(data, follows, is_its);
             let candidate = candidate(&SENSOR_LAG.effect, location, vec![usual.clone()]);
-            let candidate = Candidate { weight, ..candidate };
+            // a cell that lags keeps of each change what friction in the slide adds to it
+            let opposite = is_imposed.then_some(FRICTION.effect.name);
+            let candidate = Candidate { weight, opposite, ..candidate };
             entries.push(alternative((candidate, vec![Action::Display(display.into())])));
         };
         let all = match form {
             None => Location::Part(Part::Sensors),
             Some(form) => Location::Form { part: Part::Sensors, form: form.into() },
         };
-        add(all, often, &|_| true);
-        for &channel in channels.iter().filter(|_| channels.len() > 1) {
+        add(all, often, &|d| !is_imposed || d.imposed.is_some());
+        for &channel in channels.iter().filter(|_| channels.len() > 1 && !is_imposed) {
             let weight = often / channels.len() as f64;
-            add(Location::Channel { channel, form }, weight, &|other| other == channel);
+            add(Location::Channel { channel, form }, weight, &|d| d.channel == channel);
         }
     }
     entries

@@ -10,9 +10,13 @@ use super::load::{ALIGNMENT, TURNS, WIDEST, misalignment, pairs, whole_turn};
 use super::places::measured_channels;
 use crate::diagnosis::rig::mechanics::action::{Action, DriftPer};
 use crate::diagnosis::rig::mechanics::load_history::dwell;
+use crate::diagnosis::rig::model::RigModel;
 use crate::diagnosis::rig::recording::datum::Datum;
-use crate::inference::{Candidate, Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
+use crate::inference::{
+    Candidate, Effect, Finding, Kind, Location, Part, Quantity, Reported, Variable, WrittenTo,
+};
 use crate::spatial::Axis;
+use crate::units::UM;
 
 /// Scale error of a displacement sensor that was not calibrated in place.
 const SCALE: f64 = 0.03;
@@ -200,7 +204,13 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
         match &finding.location {
             Location::Channel { channel, form } => {
                 let since = form.map(|form| format!(" {form}")).unwrap_or_default();
-                format!("Sensor d{channel} drifts by {drift}{since}")
+                match load_drift(finding, model, *channel) {
+                    Some(load) => format!(
+                        "The load cell drifts by {load}{since} under loads along {channel}, or the zero of d{channel} \
+                         the other way"
+                    ),
+                    None => format!("Sensor d{channel} drifts by {drift}{since}"),
+                }
             }
             Location::Form { form, .. } => format!("The sensors drift by {drift} {form}"),
             _ => format!("The sensors drift by {drift}"),
@@ -208,6 +218,21 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
     },
     write: out_of_the_readings,
 };
+
+/// What a measured load drifts by, where each datum of the channel is one.
+fn load_drift(finding: &Finding, model: &RigModel, channel: Axis) -> Option<String> {
+    let per_newton = model.per_newton()?;
+    let mut own = model.data().iter().filter(|datum| datum.channel == channel);
+    own.all(|datum| datum.imposed.is_some()).then_some(())?;
+    let own = |(action, _, drift): (&Action, _, Quantity)| match action {
+        Action::Drift(other, per, _) if *other == channel => {
+            let unit = per.unit_name().replacen("µm", "N", 1);
+            Some(drift.map(|drift| drift * UM / per_newton).with_unit(&unit))
+        }
+        _ => None,
+    };
+    by_action(finding, model).into_iter().find_map(own)
+}
 
 impl DriftPer {
     /// At the end of a parameter's name.

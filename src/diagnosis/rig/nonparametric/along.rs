@@ -82,6 +82,7 @@ pub(super) fn rival(location: Location, parameters: Vec<Parameter>) -> Candidate
         parameters,
         weight: 1.0,
         is_alternative: false,
+        opposite: None,
         is_nonparametric: true,
     }
 }

@@ -21,6 +21,8 @@ use crate::rig::readings::Direction;
 
 /// Waiting times that differ by less than this factor are the same.
 const SAME_WAIT: f64 = 1.1;
+/// And speeds: what is fast and slow alike follows the sign of the motion alone.
+const SAME_SPEED: f64 = 1.25;
 
 /// The change of the load before each datum.
 pub(in crate::diagnosis::rig) struct Before {
@@ -63,7 +65,7 @@ impl Before {
     /// How fast the load was changed to what it is, N/s (m/s of an imposed displacement):
     /// v = (F − F′)/Δt, positive where it grew, Δt from the reading before until it hung, else
     /// until it is read; at the first reading of a run the usual one. Nothing where it is always
-    /// the same at the same load.
+    /// the same at the same load, or but for its sign everywhere.
     pub fn speeds(&self, data: &[Datum]) -> Option<Vec<f64>> {
         let times: Vec<f64> = data.iter().map(|d| d.time).collect::<Option<_>>()?;
         let usual = dwell(data, &times);
@@ -80,7 +82,9 @@ impl Before {
             }
         }
         let known: Coordinate = speed.iter().copied().map(Some).collect();
-        is_free(data, &known).then_some(speed)
+        let sizes = || speed.iter().map(|v| v.abs()).filter(|v| *v > 0.0);
+        let (least, most) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
+        (most > SAME_SPEED * least && is_free(data, &known)).then_some(speed)
     }
 
     /// C·(F − F′) of each datum, m: how far the rod deflects between the reading before and this
@@ -162,5 +166,8 @@ mod tests {
         // the same load came once from below and once, more slowly, from above; as long as usual
         // before the first reading
         assert_eq!(before.speeds(&data), Some(vec![0.25, 0.5, -0.25]));
+        // as fast up as down it follows the direction of the motion, and nothing else
+        let data = datum::all(&Readings::from_text("f", &text.replace(",30,10", ",20,10")).unwrap().rows);
+        assert_eq!(Before::of(&data).speeds(&data), None);
     }
 }

@@ -14,6 +14,7 @@ mod tests;
 
 use std::collections::HashMap;
 
+use super::settings::settings;
 use crate::diagnosis::rig::numbering::numbered;
 use crate::rig::readings::{Direction, Driven, Phase, Reading, instants};
 
@@ -59,13 +60,14 @@ pub struct Motion {
 
 impl Chronicle {
     pub fn of(rows: &[Reading], driven: Driven) -> Chronicle {
+        let set = settings(rows, driven);
         let place = places(rows);
         let mut walk: Vec<usize> = (0..rows.len()).collect();
         walk.sort_by_key(|&i| (place.as_ref().map_or(0, |place| place[i]), i));
         let session = in_walk(&walk, |i| rows[i].session.as_deref());
         let has_phase = rows.iter().any(|row| row.phase.is_some());
         let ways = |keys: &dyn Fn(usize) -> Option<(usize, usize)>| -> HashMap<usize, Motion> {
-            if has_phase { HashMap::new() } else { motions(rows, driven, &walk, keys) }
+            if has_phase { HashMap::new() } else { motions(rows, (driven, &set), &walk, keys) }
         };
         let axis = |i: usize| rows[i].direction.axis.index();
         // rows without a trial that go up and down are one run
@@ -86,7 +88,7 @@ impl Chronicle {
             trial[i] = match rows[i].trial {
                 Some(_) => named.next().unwrap_or_default(),
                 None if is_one_run => count + session[i],
-                None => open.entry(own).or_default().trial(&rows[i], driven, goes_on),
+                None => open.entry(own).or_default().trial(&rows[i], set[i], goes_on),
             };
         }
         if !is_one_run {
@@ -221,26 +223,18 @@ fn runs_of(rows: &[usize], run: &[usize]) -> Vec<usize> {
     runs
 }
 
-/// What was set, along the positive axis: the load (N) or the displacement (m).
-fn drive(row: &Reading, driven: Driven) -> Option<f64> {
-    match driven {
-        Driven::Load => Some(row.signed_load()),
-        Driven::Displacement => row.offset[row.direction.axis.index()],
-    }
-}
-
 /// The direction of motion of each row that has a key; nothing where the rows of the keys do not go
 /// up and down in steps.
 fn motions(
     rows: &[Reading],
-    driven: Driven,
+    (driven, set): (Driven, &[Option<f64>]),
     walk: &[usize],
     key: &dyn Fn(usize) -> Option<(usize, usize)>,
 ) -> HashMap<usize, Motion> {
     let mut groups: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
     let mut keys = Vec::new();
     for &i in walk {
-        let Some(key) = key(i).filter(|_| drive(&rows[i], driven).is_some()) else { continue };
+        let Some(key) = key(i).filter(|_| set[i].is_some()) else { continue };
         let group = groups.entry(key).or_insert_with(|| {
             keys.push(key);
             Vec::new()
@@ -256,7 +250,7 @@ fn motions(
     let mut ways = [(0.0f64, 0.0f64); 2];
     for key in keys {
         let own = &groups[&key];
-        let drives: Vec<f64> = own.iter().filter_map(|&i| drive(&rows[i], driven)).collect();
+        let drives: Vec<f64> = own.iter().filter_map(|&i| set[i]).collect();
         let mut before: Option<(f64, Phase)> = None;
         for ((&i, &drive), (direction, cycle)) in own.iter().zip(&drives).zip(turns(&drives)) {
             let phase = match before {
@@ -336,9 +330,9 @@ impl OpenRun {
     /// Number of the run that a row without a trial continues or begins: a run along an axis goes
     /// on until something is read again that it has read before; reading the display once more at
     /// the same load is no new run where the row before it `goes_on`: was of the same axis.
-    fn trial(&mut self, row: &Reading, driven: Driven, goes_on: bool) -> usize {
+    fn trial(&mut self, row: &Reading, set: Option<f64>, goes_on: bool) -> usize {
         let stations = [row.load_station, row.read_station].map(|s| s.map(f64::to_bits));
-        let set = drive(row, driven).unwrap_or(row.load).abs();
+        let set = set.unwrap_or(row.load).abs();
         let condition = (row.direction.sign, set.to_bits(), row.phase, stations);
         let channels = row.offset.map(|offset| offset.is_some());
         let overlaps = |other: &[bool; 3]| channels.iter().zip(other).any(|(a, b)| *a && *b);

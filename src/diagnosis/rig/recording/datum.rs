@@ -9,6 +9,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::chronicle::{Chronicle, Motion};
 use super::rezeroed::{Shown, is_zeroed_by_direction};
+use super::settings::settings;
 use crate::diagnosis::rig::numbering::numbered;
 use crate::inference::RunName;
 use crate::rig::readings::{Axis, Direction, Driven, Phase, Reading, Readings};
@@ -75,8 +76,10 @@ pub struct Datum {
 /// A displacement that was imposed along the axis of the load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Imposed {
-    /// Along the positive axis, m.
+    /// Along the positive axis, as it was read, m.
     pub displacement: f64,
+    /// The setting that it is a reading of: see [`settings`](super::settings).
+    pub set: f64,
     /// What a newton of the measured load counts, m/N: one number for all loads of a recording, its
     /// largest displacement over its largest load.
     pub per_newton: f64,
@@ -91,6 +94,11 @@ impl Datum {
     /// What was set: the load along the positive axis (N), or the displacement that was imposed
     /// (m).
     pub fn drive(&self) -> f64 {
+        self.imposed.map_or(self.signed_load(), |imposed| imposed.set)
+    }
+
+    /// The same as it was read.
+    pub(in crate::diagnosis::rig) fn drive_as_read(&self) -> f64 {
         self.imposed.map_or(self.signed_load(), |imposed| imposed.displacement)
     }
 
@@ -150,13 +158,14 @@ pub fn all(rows: &[Reading]) -> Vec<Datum> {
 pub fn recorded(readings: &Readings) -> Vec<Datum> {
     let mut data = of_rows(&readings.rows, readings.header.driven);
     if readings.header.driven == Driven::Displacement {
-        impose(&mut data);
+        impose(&mut data, &settings(&readings.rows, readings.header.driven));
     }
     data
 }
 
-/// Makes the load what was measured of all data along their loads, and the offset what was imposed.
-fn impose(data: &mut [Datum]) {
+/// Makes the load what was measured of all data along their loads, and the offset what was imposed;
+/// `settings` of the rows of the file.
+fn impose(data: &mut [Datum], settings: &[Option<f64>]) {
     let is_along = |datum: &Datum| datum.channel == datum.direction.axis;
     let largest = |value: &dyn Fn(&Datum) -> f64| {
         data.iter().filter(|d| is_along(d)).fold(0.0, |most: f64, datum| most.max(value(datum)))
@@ -167,7 +176,8 @@ fn impose(data: &mut [Datum]) {
     }
     let per_newton = displacement / load;
     for datum in data.iter_mut().filter(|datum| is_along(datum)) {
-        datum.imposed = Some(Imposed { displacement: datum.measured, per_newton });
+        let set = settings[datum.row - 1].unwrap_or(datum.measured);
+        datum.imposed = Some(Imposed { displacement: datum.measured, set, per_newton });
         datum.measured = per_newton * datum.signed_load();
         if datum.motion.is_none() {
             let away = if datum.is_unloading() { -1.0 } else { 1.0 };

@@ -1,26 +1,12 @@
 //! The step of a display.
 
 use super::datum::Datum;
-use crate::units::UM;
+use super::multiples::step_of;
 
 /// The step that all offsets are multiples of, m: 10, 5, 2, 1, 0.5 µm and so on; 0 where they show
 /// none.
 pub fn resolution<'a>(data: impl IntoIterator<Item = &'a Datum>) -> f64 {
-    const COARSEST: i32 = 1;
-    const FINEST: i32 = -6;
-    /// The file's decimals are not exact in binary, and the more steps the less so.
-    const INEXACT: f64 = 1e-6;
-    let is_multiple = |datum: &Datum, step: f64| {
-        let steps = datum.measured / UM / step;
-        (steps - steps.round()).abs() <= INEXACT
-    };
-    let steps = (FINEST..=COARSEST).rev().flat_map(|decade| {
-        let mantissas: &[f64] = if decade == COARSEST { &[1.0] } else { &[5.0, 2.0, 1.0] };
-        mantissas.iter().map(move |mantissa| mantissa * 10f64.powi(decade))
-    });
-    let data: Vec<&Datum> = data.into_iter().collect();
-    let mut steps = steps.filter(|&step| data.iter().all(|d| is_multiple(d, step)));
-    steps.next().map_or(0.0, |step| step * UM)
+    step_of(&data.into_iter().map(|datum| datum.measured).collect::<Vec<_>>())
 }
 
 #[cfg(test)]
@@ -28,6 +14,7 @@ mod tests {
     use super::*;
     use crate::diagnosis::rig::recording::datum;
     use crate::rig::readings::Readings;
+    use crate::units::UM;
 
     #[test]
     fn the_resolution_is_the_step_of_the_display() {

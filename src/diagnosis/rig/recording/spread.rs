@@ -112,7 +112,7 @@ fn stiffer(data: &[Datum]) -> [f64; 3] {
         own.fold(0.0, |most: f64, datum| most.max(value(datum).abs()))
     };
     Axis::ALL.map(|axis| {
-        let imposed = largest(axis, Datum::drive);
+        let imposed = largest(axis, Datum::drive_as_read);
         if imposed > 0.0 { largest(axis, |datum| datum.measured) / imposed } else { 1.0 }
     })
 }
@@ -233,7 +233,7 @@ fn differences(axis: Axis, own: &[&Datum]) -> [Vec<f64>; 3] {
         ways.entry((datum.stations(), is_back, datum.run)).or_default().push(datum);
     }
     for way in ways.values_mut() {
-        way.sort_by(|a, b| a.drive().total_cmp(&b.drive()).then(a.order.cmp(&b.order)));
+        way.sort_by(|a, b| a.drive_as_read().total_cmp(&b.drive_as_read()).then(a.order.cmp(&b.order)));
     }
     let smooth = ways.values().flat_map(|way| way.windows(3).map(of_neighbours)).collect();
     let mut repeats = Vec::new();
@@ -254,7 +254,7 @@ fn differences(axis: Axis, own: &[&Datum]) -> [Vec<f64>; 3] {
 
 /// What a reading is off the line through its neighbours.
 fn of_neighbours(three: &[&Datum]) -> f64 {
-    let [x, y] = [Datum::drive, |datum: &Datum| datum.measured]
+    let [x, y] = [Datum::drive_as_read, |datum: &Datum| datum.measured]
         .map(|value: fn(&Datum) -> f64| [value(three[0]), value(three[1]), value(three[2])]);
     let t = if x[2] > x[0] { (x[1] - x[0]) / (x[2] - x[0]) } else { 0.5 };
     (y[1] - (1.0 - t) * y[0] - t * y[2]) / (1.0 + (1.0 - t).powi(2) + t * t).sqrt()
@@ -265,10 +265,10 @@ fn of_repeats(before: &[&Datum], after: &[&Datum]) -> Vec<f64> {
     let mut rest = after.iter().peekable();
     let mut differences = Vec::new();
     for one in before {
-        while rest.peek().is_some_and(|other| other.drive() < one.drive()) {
+        while rest.peek().is_some_and(|other| other.drive_as_read() < one.drive_as_read()) {
             rest.next();
         }
-        if let Some(other) = rest.next_if(|other| other.drive() == one.drive()) {
+        if let Some(other) = rest.next_if(|other| other.drive_as_read() == one.drive_as_read()) {
             differences.push(other.measured - one.measured);
         }
     }

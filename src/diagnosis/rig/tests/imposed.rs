@@ -1,0 +1,80 @@
+//! Displacements that are set again and again, with the loads that a cell shows.
+
+use super::*;
+use crate::statistics::Random;
+
+/// Steps from nothing to the largest displacement, µm, and what cycles there are.
+const STEP: f64 = 62.5;
+const STEPS: usize = 8;
+const CYCLES: usize = 4;
+/// Noise of the displacement, µm, and of the load, N.
+const NOISE: (f64, f64) = (0.5, 0.01);
+
+/// Cycles along y: what the cell shows of loads (N) that bend the rod as far, which way it moved
+/// and when.
+fn cycles(seed: u64, shown: impl Fn(&[f64], usize) -> f64) -> RigDiagnosis {
+    let (stiffness, mut random) = (1.0 / compliance(&rod(""))[(1, 1)], Random::seeded(seed, 0));
+    let places = (0..4 * STEPS * CYCLES).map(|k| {
+        let quarter = (k % STEPS) as f64;
+        let (there, back) = (quarter, STEPS as f64 - quarter);
+        [there, back, -there, -back][k / STEPS % 4] * STEP
+    });
+    let places: Vec<f64> = places.collect();
+    let loads: Vec<f64> = places.iter().map(|u| stiffness * u * UM).collect();
+    let mut text = "# driven = \"displacement\"\naxis,load_n,time_s,dy_um\n".to_owned();
+    for (k, place) in places.iter().enumerate().skip(1) {
+        let load = shown(&loads, k) + NOISE.1 * random.normal();
+        let (sign, read) = (if load < 0.0 { "-" } else { "" }, place + NOISE.0 * random.normal());
+        text += &format!("{sign}y,{:.3},{},{read:.1}\n", load.abs(), 20 * k);
+    }
+    diagnose(&readings(&text), Some(&rod(""))).unwrap()
+}
+
+/// Loads that are as they are.
+fn as_they_are(loads: &[f64], k: usize) -> f64 {
+    loads[k]
+}
+
+fn names(found: &RigDiagnosis) -> Vec<&'static str> {
+    found.diagnosis.findings.iter().map(|finding| finding.effect.name).collect()
+}
+
+#[test]
+fn what_the_readings_of_a_setting_scatter_is_no_wave_of_its_steps() {
+    for seed in 1..4 {
+        let found = cycles(seed, as_they_are);
+        assert!(!found.diagnosis.is_mismatch(), "{seed}: {:?}", found.diagnosis.discrepancy);
+    }
+}
+
+#[test]
+fn what_bends_more_stiffly_is_no_wave_either() {
+    let found = cycles(4, |loads, k| {
+        let largest = loads.iter().fold(0.0, |most: f64, load| most.max(load.abs()));
+        loads[k] * (1.0 + 0.02 * (loads[k] / largest).powi(2))
+    });
+    assert!(names(&found) == ["nonlinear_stiffness"] && found.diagnosis.discrepancy.is_none());
+}
+
+/// Friction adds to each change of the load, and a cell that lags keeps a part of it.
+#[test]
+fn friction_is_not_what_a_load_cell_does_that_lags() {
+    let moved = |loads: &[f64], k: usize| loads[k] - loads[k - 1];
+    let found = cycles(5, |loads, k| loads[k] + 0.2 * f64::signum(moved(loads, k)));
+    assert!(names(&found) == ["friction"] && found.diagnosis.discrepancy.is_none());
+    let force = found.diagnosis.findings[0].quantity("force_n").unwrap();
+    assert!((force.value - 0.2).abs() < 0.01 && force.high - force.low < 0.02, "{force:?}");
+    let found = cycles(6, |loads, k| loads[k] - 0.1 * moved(loads, k));
+    assert!(names(&found) == ["sensor_lag"] && found.diagnosis.discrepancy.is_none());
+    let share = found.diagnosis.findings[0].quantity("fraction").unwrap();
+    assert!((share.value - 0.1).abs() < 0.005 && share.high - share.low < 0.01, "{share:?}");
+}
+
+/// Of what drifts the load is what is compared: it is the cell, or the zero of the displacement.
+#[test]
+fn a_load_that_drifts_has_newtons() {
+    let found = cycles(7, |loads, k| loads[k] + 0.2 * k as f64 / 180.0);
+    let [drift] = &found.diagnosis.findings[..] else { panic!("{:?}", names(&found)) };
+    let words = found.model.describe(drift).observed;
+    assert!(words.starts_with("The load cell drifts by 0.2") && words.contains("N per hour"), "{words}");
+}

@@ -4,7 +4,8 @@
 //! Three steps:
 //!
 //! 1. readings that no load could give: channels that are stuck or cut off, runs whose sign is the
-//!    other way (`sensors.rs`, `groups.rs`); a line of readings shows these by itself;
+//!    other way (`sensors.rs`, `groups.rs`), one of several sensors along the rod (`gauges.rs`); a
+//!    line of readings shows these by itself;
 //! 2. the slopes of all lines against the rod (`lines.rs`, `physics.rs`): where what is left is
 //!    more than ordinary physics leaves, some hundred hypotheses (`labels.rs`, `rods.rs`), each a
 //!    [`relabelling::Relabelling`] of readings or another rod, compete with each other and with all that physics may
@@ -20,6 +21,7 @@ mod columns_and_rod;
 mod copies;
 mod displaced;
 mod entries;
+mod gauges;
 mod groups;
 mod increments;
 mod labels;
@@ -84,6 +86,7 @@ pub(super) fn mended(readings: &Readings, rod: Option<&Rod>, others: &[(String, 
     mended.trials()?;
     mended.entries();
     mended.sensors()?;
+    mended.gauges()?;
     if mended.has_data {
         mended.labels(others)?;
         mended.weights();

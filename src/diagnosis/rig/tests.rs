@@ -8,6 +8,8 @@ mod load;
 mod named;
 mod reading;
 mod scatter;
+mod sessions;
+mod stations;
 mod structure;
 
 use approx::assert_relative_eq;

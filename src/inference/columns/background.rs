@@ -116,9 +116,17 @@ impl Folded {
         (factors, known + (all - &self.basis * self.basis.transpose()))
     }
 
-    /// See [`is_implausible`].
+    /// See [`is_implausible`]; or one number alone has to be that far off, whichever of the n:
+    ///
+    /// ```text
+    /// n·p(χ²₁ > z²/4) < 0.01
+    /// ```
     pub fn is_implausible(&self, hypothesis: &Hypothesis) -> bool {
+        let (factors, _) = self.factors(hypothesis);
+        let farthest = factors.iter().fold(0.0, |most: f64, factor| most.max(factor.powi(2)));
+        let of_one = chi_squared_survival(farthest / UNDERSTATED.powi(2), 1.0);
         is_implausible(&self.evidence, hypothesis)
+            || of_one.is_ok_and(|p| p * (factors.len() as f64).max(1.0) < IMPLAUSIBLE)
     }
 
     /// What the numbers that moved change in the data.

@@ -27,6 +27,17 @@ pub(in crate::diagnosis::rig) fn measured_channels(data: &[Datum]) -> Vec<Axis> 
     Axis::ALL.into_iter().filter(|channel| data.iter().any(|d| d.channel == *channel)).collect()
 }
 
+/// Stations of fewer sensors than these are not looked at one by one, nor of more.
+const SEVERAL: std::ops::RangeInclusive<usize> = 3..=12;
+
+/// Where the readings say that sensors stand, m, where these are several.
+pub(super) fn read_stations(data: &[Datum]) -> Vec<f64> {
+    let mut stations: Vec<f64> = data.iter().filter_map(|d| d.read_station).collect();
+    stations.sort_by(f64::total_cmp);
+    stations.dedup();
+    if SEVERAL.contains(&stations.len()) { stations } else { Vec::new() }
+}
+
 /// Most sessions that are distinguished.
 const MOST_SESSIONS: usize = 12;
 

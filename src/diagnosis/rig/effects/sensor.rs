@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use super::entry::{
     Context, Entry, RigEffect, UNBOUNDED, Usual, along_the_load, alternative, by_action, candidate, entry,
-    number, out_of_the_readings, parameter,
+    number, out_of_the_readings, parameter, preferring,
 };
 use super::load::{ALIGNMENT, TURNS, WIDEST, misalignment, pairs, whole_turn};
-use super::places::measured_channels;
+use super::places::{measured_channels, read_stations};
 use crate::diagnosis::rig::mechanics::action::{Action, DriftPer};
 use crate::diagnosis::rig::mechanics::load_history::dwell;
 use crate::diagnosis::rig::model::RigModel;
@@ -16,12 +16,13 @@ use crate::inference::{
     Candidate, Effect, Finding, Kind, Location, Part, Quantity, Reported, Variable, WrittenTo,
 };
 use crate::spatial::Axis;
-use crate::units::UM;
+use crate::units::{MM, UM};
 
 /// Scale error of a displacement sensor that was not calibrated in place.
 const SCALE: f64 = 0.03;
 /// Beyond that a channel is in another unit, or it shows something else.
 const NO_UNIT: (f64, f64) = (0.5, 2.0);
+const EXCESS: (f64, f64) = (-0.5, 1.0);
 /// Drift over the whole recording as a share of its largest reading.
 const DRIFT: f64 = 0.02;
 /// Within which share of a recording a drift settles, and what is said of it since the first
@@ -65,12 +66,18 @@ pub static SENSOR_SCALE: RigEffect = RigEffect {
         name: "sensor_scale",
         kind: Kind::Physics,
         summary: "a sensor shows too much or too little",
-        formula: "y → s·y on one channel",
+        formula: "y → s·y on one channel, or at one station",
         prior: "3 %: a displacement sensor that was not calibrated in place",
-        parameters: &[(&["factor"], "shown over true displacement")],
+        parameters: &[
+            (&["factor"], "shown over true displacement"),
+            (&["excess_percent"], "what is shown too much of it, of sensors at one station"),
+        ],
         needs: "a rod file",
         cause: "the scale of the sensor",
-        cause_at: |location| format!("the scale of sensor {location}"),
+        cause_at: |location| match location {
+            Location::Station(station) => format!("the scale of the sensors at {:.1} mm", station / MM),
+            channel => format!("the scale of sensor {channel}"),
+        },
         written_to: WrittenTo::Recording,
         reported: Reported::Alone,
         seen_along: along_the_load,
@@ -84,12 +91,24 @@ pub static SENSOR_SCALE: RigEffect = RigEffect {
             let location = Location::Channel { channel, form: None };
             entry(&SENSOR_SCALE, location, factor, Action::SensorScale(channel))
         };
-        measured_channels(context.data).into_iter().map(of_channel).collect()
+        let channels = measured_channels(context.data);
+        let stations = read_stations(context.data);
+        let of_station = |&station: &f64| {
+            let own = context.data.iter().enumerate().filter(|(_, d)| d.read_station == Some(station));
+            let shown = Action::Shift(own.map(|(i, d)| (i, d.predicted)).collect());
+            let excess = parameter("excess_percent", 0.0, SCALE, EXCESS);
+            entry(&SENSOR_SCALE, Location::Station(station), excess, shown)
+        };
+        let entries = channels.into_iter().map(of_channel).chain(stations.iter().map(of_station)).collect();
+        preferring(entries, |candidate| !matches!(candidate.location, Location::Station(_)))
     },
     missing: |_| "no readings were taken",
-    observed: |finding, _| {
-        let how = number(finding, "factor").misread();
-        format!("Sensor {} reads {how}", finding.location)
+    observed: |finding, _| match &finding.location {
+        Location::Station(station) => {
+            let how = number(finding, "excess_percent").map(|excess| 1.0 + 0.01 * excess).misread();
+            format!("The sensors at {:.1} mm read {how}", station / MM)
+        }
+        channel => format!("Sensor {channel} reads {}", number(finding, "factor").misread()),
     },
     write: out_of_the_readings,
 };
@@ -211,6 +230,9 @@ pub static THERMAL_DRIFT: RigEffect = RigEffect {
                     ),
                     None => format!("Sensor d{channel} drifts by {drift}{since}"),
                 }
+            }
+            Location::Form { form, .. } if form.starts_with("at ") => {
+                format!("The sensors {form} drift by {drift}")
             }
             Location::Form { form, .. } => format!("The sensors drift by {drift} {form}"),
             _ => format!("The sensors drift by {drift}"),
@@ -336,6 +358,16 @@ fn drifts(context: &mut Context) -> Vec<Entry> {
         let ways: [&dyn Fn(&Datum) -> f64; 2] = [&of_file, &of_run];
         for (form, zero) in course.forms.into_iter().zip(ways).take(1 + usize::from(has_runs)) {
             entries.extend(drifts_since(data, &channels, &course, form, zero));
+            // one of several sensors along the rod, at one rate
+            if !course.is_settling {
+                let stations = read_stations(data);
+                let share = 1.0 / stations.len().max(1) as f64;
+                let of_station = |station: f64| drift_at(data, &channels, &course, (form, zero), station);
+                let own = stations.into_iter().map(of_station);
+                entries.extend(
+                    own.map(|(own, actions)| (Candidate { weight: share * own.weight, ..own }, actions)),
+                );
+            }
         }
     }
     entries
@@ -358,6 +390,29 @@ fn at_zero(data: &[Datum], run: &[usize], values: &[f64]) -> f64 {
     let (before, lasted) = before().unwrap_or((1.0, (data[last].order - data[first].order) as f64));
     let rate = if lasted > 0.0 { (values[last] - values[first]) / lasted } else { 0.0 };
     values[first] - rate * before
+}
+
+/// The drift of all channels of the sensors at one station, in some direction.
+fn drift_at(
+    data: &[Datum],
+    channels: &[Axis],
+    course: &Course,
+    (form, zero): (Option<&'static str>, &dyn Fn(&Datum) -> f64),
+    station: f64,
+) -> Entry {
+    let Course { values, per, size, weight, .. } = course;
+    let is_there = |d: &Datum| d.read_station == Some(station);
+    let read = channels.iter().filter(|channel| data.iter().any(|d| is_there(d) && d.channel == **channel));
+    let of_channel = |&channel: &Axis| {
+        let own = data.iter().enumerate().filter(|(_, d)| is_there(d) && d.channel == channel);
+        let shift = Action::Drift(channel, *per, own.map(|(i, d)| (i, values[i] - zero(d))).collect());
+        (parameter(&format!("d{channel}_{}", per.suffix()), 0.0, *size, UNBOUNDED), shift)
+    };
+    let (parameters, actions) = read.map(of_channel).unzip();
+    let form = form.map(|form| format!(" {form}")).unwrap_or_default();
+    let location = Location::Form { part: Part::Sensors, form: format!("at {:.1} mm{form}", station / MM) };
+    let candidate = candidate(&THERMAL_DRIFT.effect, location, parameters);
+    (Candidate { weight: *weight, ..candidate }, actions)
 }
 
 /// Drifts of one course since some zero, where it had that value.

@@ -9,7 +9,7 @@ mod unknown_unit;
 pub(super) use self::in_file::Labels;
 use self::signs::signs;
 use self::swaps::swaps;
-pub(super) use self::units::{BESIDE, HARDLY_BESIDE, of_loads};
+pub(super) use self::units::{BESIDE, HARDLY_BESIDE, ReadIn, of_loads, of_readings};
 use self::units::{decimals, decimals_of_axes, load_units, reading_units};
 pub(super) use self::unknown_unit::{BEYOND_A_ROD, unknown_units};
 pub use self::unknown_unit::{is_like_a_rod, is_unknown_unit};

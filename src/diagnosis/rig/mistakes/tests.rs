@@ -1,6 +1,7 @@
 //! Every mistake on recordings as labs make them, and none on what only physics did.
 
 mod entries;
+mod gauges;
 mod labels;
 mod named;
 mod parts;

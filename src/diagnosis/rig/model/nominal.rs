@@ -7,6 +7,7 @@
 //! sensor   u·C·F           of one channel
 //! station  u·∂(C·F)/∂s     every stated station of a load or of a sensor
 //! point    u·∂(C·F)/∂s     of loads whose station no row states: they may not hang at the tip itself
+//! root     θ = β·M at the root, in each session in which the rod was mounted anew
 //! clamp    as l1: a clamp that is farther out leaves a shorter rod
 //! ```
 
@@ -17,12 +18,20 @@ use crate::diagnosis::rig::recording::datum::Datum;
 use crate::error::Result;
 use crate::inference::NominalParameter;
 use crate::rig::readings::RigHeader;
-use crate::rod::{NominalNumber, Rod};
+use crate::rod::{Joint, NominalNumber, Rod};
 use crate::spatial::Axis;
 use crate::units::{MM, PERCENT};
 
+/// One µrad/(N·m).
+const MICRORADIAN: f64 = 1e-6;
 /// Standard uncertainty of a scale that the readings themselves gave.
 const UNKNOWN_SCALE: f64 = 0.1;
+
+/// What a rod that is mounted anew deflects otherwise along its loads, as a share, 1 σ: flange and
+/// screws give way to another degree each time.
+const MOUNTED_ANEW: f64 = 0.005;
+/// Sessions that have roots of their own, at most: each is a column.
+const MOST_SESSIONS: usize = 50;
 
 /// What a number that is known to a standard uncertainty is.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +46,8 @@ pub enum KnownNumber {
     Station(f64),
     /// Where loads act whose station the readings do not state.
     LoadPoint,
+    /// What the root of the session of this number gives way by, in bending or in torsion.
+    Root(usize),
     /// A constant of a law of the rod's file: numbers of both.
     LawConstant(usize, usize),
 }
@@ -130,8 +141,55 @@ pub fn all(
     {
         add(KnownNumber::LoadPoint, along("load point".into(), bent.length()), column);
     }
+    for (session, parameter, column) in roots(data, bent, &pairs, &deflections) {
+        add(KnownNumber::Root(session), parameter, column);
+    }
     let columns = DMatrix::from_fn(data.len(), columns.len(), |i, k| columns[k][i]);
     Ok(KnownNumbers { known, parameters, columns, deflections })
+}
+
+/// Number, root and column of each session, where there are several: in bending and in torsion.
+fn roots(
+    data: &[Datum],
+    rod: &Rod,
+    pairs: &Pairs<'_>,
+    deflections: &[f64],
+) -> Vec<(usize, NominalParameter, Vec<f64>)> {
+    let count = data.iter().map(|d| d.session_number).max().map_or(0, |last| last + 1);
+    if !(2..=MOST_SESSIONS).contains(&count) {
+        return Vec::new();
+    }
+    let mut all = Vec::new();
+    for (way, [bending, torsion]) in [("bending", [1.0, 0.0]), ("torsion", [0.0, 1.0])] {
+        let mut softer = rod.clone();
+        softer.joints.push(Joint::new("root", 0.0, bending * MICRORADIAN, torsion * MICRORADIAN));
+        let Some(softer) = pairs.predicted(data, &softer) else { continue };
+        let more: Vec<f64> = softer.iter().zip(deflections).map(|(softer, bent)| softer - bent).collect();
+        // the share that the most sensitive line changes by
+        let share = |(d, (more, bent)): (&Datum, (&f64, &f64))| {
+            let is_along = d.channel == d.direction.axis && *bent != 0.0;
+            if is_along { (more / bent).abs() } else { 0.0 }
+        };
+        let most = data.iter().zip(more.iter().zip(deflections)).map(share).fold(0.0, f64::max);
+        let times = if most > 0.0 { MOUNTED_ANEW / most } else { 0.0 };
+        for session in 0..count {
+            let own = data.iter().find(|d| d.session_number == session);
+            let name = own.and_then(|d| d.session.as_deref()).unwrap_or("without a name");
+            let parameter = NominalParameter {
+                name: format!("the root's {way} in session {name}"),
+                unit: "µrad/(N·m)",
+                si: MICRORADIAN,
+                value: 0.0,
+                standard_uncertainty: times * MICRORADIAN,
+            };
+            let of_datum = |(d, more): (&Datum, &f64)| match d.session_number == session {
+                true => times * more,
+                false => 0.0,
+            };
+            all.push((session, parameter, data.iter().zip(&more).map(of_datum).collect()));
+        }
+    }
+    all
 }
 
 /// Which pair of load and read station each datum has.

@@ -90,6 +90,22 @@ const FOR_MICROMETRES: [Unit; 7] = [
     unit("hundredths of a millimetre", 10.0, -1.5, Multiply("10")),
 ];
 
+/// A unit that readings may have instead of micrometres.
+pub struct ReadIn {
+    pub name: &'static str,
+    /// True value over the one that was read.
+    pub factor: f64,
+    /// `multiply them by 1000`.
+    pub cure: String,
+}
+
+/// All of them.
+pub fn of_readings() -> Vec<ReadIn> {
+    let read_in =
+        |unit: &Unit| ReadIn { name: unit.name, factor: unit.factor, cure: unit.cure.applied_to("them") };
+    FOR_MICROMETRES.iter().map(read_in).collect()
+}
+
 /// Units of the loads, with their factors.
 pub fn of_loads(column: LoadColumn) -> Vec<(&'static str, f64)> {
     let units: &[Unit] = match column {

@@ -362,7 +362,7 @@ fn drifts(context: &mut Context) -> Vec<Entry> {
             if !course.is_settling {
                 let stations = read_stations(data);
                 let share = 1.0 / stations.len().max(1) as f64;
-                let of_station = |station: f64| drift_at(data, &channels, &course, (form, zero), station);
+                let of_station = |station: f64| drift_at(data, &channels, &course, form, zero, station);
                 let own = stations.into_iter().map(of_station);
                 entries.extend(
                     own.map(|(own, actions)| (Candidate { weight: share * own.weight, ..own }, actions)),
@@ -397,7 +397,8 @@ fn drift_at(
     data: &[Datum],
     channels: &[Axis],
     course: &Course,
-    (form, zero): (Option<&'static str>, &dyn Fn(&Datum) -> f64),
+    form: Option<&'static str>,
+    zero: &dyn Fn(&Datum) -> f64,
     station: f64,
 ) -> Entry {
     let Course { values, per, size, weight, .. } = course;

@@ -135,7 +135,8 @@ pub(super) fn compared(proposed: &Proposed, without: &Diagnosis, named: &Diagnos
     if own > after || farther >= FARTHER || law.more.is_some() {
         return None;
     }
-    let is_as_little = law.noise <= AS_LITTLE * named.noise;
+    let (squares, _) = squares(evidence, [&needed.left, &left]);
+    let is_as_little = squares[1] <= AS_LITTLE.powi(2) * squares[0];
     let is_simpler = needed.are_many() && more_numbers < 0.0 && is_as_little;
     let names = names(named);
     let of_names = names.iter().map(|finding| finding.estimates.len()).sum::<usize>();
@@ -166,6 +167,12 @@ fn odds(leaves_less: f64, farther: f64, more_numbers: f64, count: f64) -> f64 {
 /// ½·ν·ln(S_one/S_other): what data are likelier, at the best noise each, where `other` is left of
 /// them than where `one` is.
 fn likelier(evidence: &Evidence, one: &DVector<f64>, other: &DVector<f64>) -> f64 {
+    let (squares, free) = squares(evidence, [one, other]);
+    0.5 * free * (squares[0].max(f64::MIN_POSITIVE) / squares[1].max(f64::MIN_POSITIVE)).ln()
+}
+
+/// S of what is left of the data in two ways, and ν.
+fn squares(evidence: &Evidence, left: [&DVector<f64>; 2]) -> ([f64; 2], f64) {
     let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (row, &group) in evidence.shared.iter().enumerate() {
         groups.entry(group).or_default().push(row);
@@ -175,13 +182,13 @@ fn likelier(evidence: &Evidence, one: &DVector<f64>, other: &DVector<f64>) -> f6
         let weight: f64 = rows.iter().map(|&row| evidence.weight[row]).sum();
         let has_zero = rows.len() > 1 && weight > 0.0;
         free += rows.len() as f64 - f64::from(u8::from(has_zero));
-        for (square, left) in squares.iter_mut().zip([one, other]) {
+        for (square, left) in squares.iter_mut().zip(left) {
             let sum: f64 = rows.iter().map(|&row| evidence.weight[row] * left[row]).sum();
             let mean = if has_zero { sum / weight } else { 0.0 };
             *square += rows.iter().map(|&row| evidence.weight[row] * (left[row] - mean).powi(2)).sum::<f64>();
         }
     }
-    0.5 * free * (squares[0].max(f64::MIN_POSITIVE) / squares[1].max(f64::MIN_POSITIVE)).ln()
+    (squares, free)
 }
 
 /// `power of the moment (root), exponent 1.38 (1.30 to 1.46)`.

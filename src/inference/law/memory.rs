@@ -28,6 +28,8 @@ pub enum Memory {
     Lagged,
 }
 
+/// What lags behind a load is known by the loads that came before, up to this share of a course.
+const OF_COURSE: f64 = 0.3;
 /// A lag may be so many times as long as the recording: it is known as a rate alone then.
 const LONGER: f64 = 5.0;
 
@@ -111,9 +113,13 @@ impl Memory {
                 let known = waits().filter(|wait| *wait > 0.0);
                 let shortest = known.fold(f64::INFINITY, f64::min);
                 // a load is what it is from one reading to the next; all else has changed before
+                let lasted = |course: &Course| course.instants.iter().map(|i| i.elapsed).sum::<f64>();
                 let longest = match site.moves.is_empty() {
                     true => LONGER * waits().sum::<f64>(),
-                    false => 3.0 * waits().fold(0.0, f64::max),
+                    false => {
+                        let course = site.courses.iter().map(lasted).fold(0.0, f64::max);
+                        (3.0 * waits().fold(0.0, f64::max)).max(OF_COURSE * course)
+                    }
                 };
                 let is_known = shortest.is_finite() && waits().all(f64::is_finite);
                 is_known.then_some((0.3 * shortest, longest))

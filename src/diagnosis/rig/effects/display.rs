@@ -8,8 +8,9 @@ use super::load::FRICTION;
 use super::places::measured_channels;
 use crate::diagnosis::rig::mechanics::action::Action;
 use crate::diagnosis::rig::mechanics::display::{Display, Follows};
+use crate::diagnosis::rig::model::RigModel;
 use crate::diagnosis::rig::recording::datum::Datum;
-use crate::inference::{Candidate, Effect, Kind, Location, Part, Reported, Variable, WrittenTo};
+use crate::inference::{Candidate, Effect, Finding, Kind, Location, Part, Reported, Variable, WrittenTo};
 use crate::units::UM;
 
 /// Play of a stylus, a lever or a dial as a share of the largest reading.
@@ -64,7 +65,11 @@ pub static SENSOR_LAG: RigEffect = RigEffect {
         match of_action(finding, model, is_late) {
             Some(share) => {
                 let share = share.map(|share| 100.0 * share).with_unit("%");
-                format!("{display} lags: {share} of each change of the load is not shown yet when it is read")
+                let or =
+                    if may_be(finding, model, false) { ", or it has a play as large as that" } else { "" };
+                format!(
+                    "{display} lags: {share} of each change of the load is not shown yet when it is read{or}"
+                )
             }
             None => {
                 let play = match model.per_newton() {
@@ -73,12 +78,22 @@ pub static SENSOR_LAG: RigEffect = RigEffect {
                         number(finding, "play_um").map(|play| play * UM / per_newton).size().with_unit("N")
                     }
                 };
-                format!("{display} follows the rod only after a play of {play}")
+                let or = if may_be(finding, model, true) { ", or is read too soon" } else { "" };
+                format!("{display} follows the rod only after a play of {play}{or}")
             }
         }
     },
     write: out_of_the_readings,
 };
+
+/// True where it may as well be the other way to be late, which in even steps is the same.
+fn may_be(finding: &Finding, model: &RigModel, is_later: bool) -> bool {
+    let rivals = finding.parts.iter().flat_map(|part| &part.rivals).filter_map(|rival| rival.term.as_ref());
+    rivals.flat_map(|term| &model.actions[term.candidate]).any(|action| match action {
+        Action::Display(display) => (display.follows() == Follows::Later) == is_later,
+        _ => false,
+    })
+}
 
 /// All displays alike, and each by itself, in each form; where displacements were imposed, the load
 /// cell, whose load is what is compared. Nothing where no load is taken off again: what is missing

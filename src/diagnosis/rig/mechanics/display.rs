@@ -6,9 +6,10 @@
 //! lag   y = u − λ·(u − u′)                      λ the share of the last change that is not shown yet
 //! ```
 //!
-//! u is what the display should show, by the base model: which way it moved, and how far it moves
-//! at all, is the same for a rod that is a little softer. A display was set to zero without a load,
-//! in the middle of its play, or on that side of it where the run before has left it.
+//! u is what the display should show of what was set, by the base model: which way it moved, and
+//! how far it moves at all, is the same for a rod that is a little softer. A display was set to zero
+//! without a load, in the middle of its play, or on that side of it where the run before has left
+//! it.
 
 use nalgebra::DVector;
 
@@ -53,7 +54,7 @@ impl Display {
                 last[sensor] = data[i].run;
             }
             if let Some(run) = sensors[sensor].last_mut() {
-                run.push((i, data[i].predicted));
+                run.push((i, data[i].predicted_as_set()));
             }
         }
         Display { follows, sensors }

@@ -102,6 +102,17 @@ impl Datum {
         self.imposed.map_or(self.signed_load(), |imposed| imposed.displacement)
     }
 
+    /// What the base model predicts of what was set, m: it does not scatter as a displacement does
+    /// that was read.
+    pub(in crate::diagnosis::rig) fn predicted_as_set(&self) -> f64 {
+        match self.imposed {
+            Some(Imposed { displacement, set, .. }) if displacement != 0.0 => {
+                self.predicted * set / displacement
+            }
+            _ => self.predicted,
+        }
+    }
+
     /// What a linear rod of this compliance (m/N) shows: the offset C·F, or the load u/C as
     /// [`Datum::measured`] counts it.
     pub(in crate::diagnosis::rig) fn elastic(&self, compliance: f64) -> f64 {

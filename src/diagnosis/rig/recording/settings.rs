@@ -61,20 +61,26 @@ fn recurring(values: &[f64]) -> Vec<f64> {
 /// several values each, on average; the fewest such, nothing where there are none. `order` is from
 /// the least value to the largest.
 fn split(order: &[usize], values: &[f64], step: f64) -> Option<Vec<Vec<usize>>> {
-    let gap = |pair: &[usize]| values[pair[1]] - values[pair[0]];
-    let mut gaps: Vec<f64> = order.windows(2).map(gap).filter(|gap| *gap > 0.0).collect();
-    gaps.sort_by(|a, b| b.total_cmp(a));
-    gaps.truncate(order.len() / READ);
-    let parts =
-        |least: f64| -> Vec<&[usize]> { order.chunk_by(|&a, &b| values[b] - values[a] < least).collect() };
-    let is_apart = |&least: &f64| {
-        let wide = |own: &&[usize]| values[own[own.len() - 1]] - values[own[0]];
-        let parts = parts(least);
-        let widest = parts.iter().map(wide).fold(step, f64::max);
-        READ * parts.len() <= order.len() && least >= APART * widest
-    };
-    let least = gaps.into_iter().find(is_apart)?;
-    Some(parts(least).into_iter().map(<[usize]>::to_vec).collect())
+    let count = order.len();
+    let at = |k: usize| values[order[k]];
+    let gap = |k: usize| at(k + 1) - at(k);
+    // each part grows over its least gaps: of the one that begins, or ends, at a value the other end
+    let mut gaps: Vec<usize> = (0..count.saturating_sub(1)).collect();
+    gaps.sort_by(|&a, &b| gap(a).total_cmp(&gap(b)));
+    let (mut first, mut last): (Vec<usize>, Vec<usize>) = ((0..count).collect(), (0..count).collect());
+    let (mut widest, mut least) = (step, None);
+    for (closed, &k) in gaps.iter().enumerate() {
+        // all gaps from this one on are open
+        if READ * (count - closed) <= count && gap(k) > 0.0 && gap(k) >= APART * widest {
+            least = Some(gap(k));
+        }
+        let (from, to) = (first[k], last[k + 1]);
+        (last[from], first[to]) = (to, from);
+        widest = widest.max(at(to) - at(from));
+    }
+    let least = least?;
+    let parts = order.chunk_by(|&a, &b| values[b] - values[a] < least);
+    Some(parts.map(<[usize]>::to_vec).collect())
 }
 
 #[cfg(test)]

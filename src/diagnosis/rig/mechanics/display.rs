@@ -7,9 +7,9 @@
 //! ```
 //!
 //! u is what the display should show of what was set, by the base model: which way it moved, and
-//! how far it moves at all, is the same for a rod that is a little softer. A display was set to zero
-//! without a load, in the middle of its play, or on that side of it where the run before has left
-//! it.
+//! how far it moves at all, is the same for a rod that is a little softer. A display was set to
+//! zero without a load, in the middle of its play, or on that side of it where the run before has
+//! left it.
 
 use nalgebra::DVector;
 

@@ -64,7 +64,7 @@ fn split(order: &[usize], values: &[f64], step: f64) -> Option<Vec<Vec<usize>>> 
     let count = order.len();
     let at = |k: usize| values[order[k]];
     let gap = |k: usize| at(k + 1) - at(k);
-    // each part grows over its least gaps: of the one that begins, or ends, at a value the other end
+    // parts grow over the least gaps: the other end of the one that begins, or ends, at a value
     let mut gaps: Vec<usize> = (0..count.saturating_sub(1)).collect();
     gaps.sort_by(|&a, &b| gap(a).total_cmp(&gap(b)));
     let (mut first, mut last): (Vec<usize>, Vec<usize>) = ((0..count).collect(), (0..count).collect());

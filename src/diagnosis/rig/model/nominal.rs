@@ -11,15 +11,19 @@
 //! clamp    as l1: a clamp that is farther out leaves a shorter rod
 //! ```
 
+use std::collections::BTreeMap;
+
 use nalgebra::{DMatrix, Matrix3};
 
 use crate::diagnosis::rig::mechanics::structure::responses;
+use crate::diagnosis::rig::numbering::numbered;
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::error::Result;
 use crate::inference::NominalParameter;
 use crate::rig::readings::RigHeader;
 use crate::rod::{Joint, NominalNumber, Rod};
 use crate::spatial::Axis;
+use crate::statistics::{mad, standard_deviation};
 use crate::units::{MM, PERCENT};
 
 /// One µrad/(N·m).
@@ -27,9 +31,11 @@ const MICRORADIAN: f64 = 1e-6;
 /// Standard uncertainty of a scale that the readings themselves gave.
 const UNKNOWN_SCALE: f64 = 0.1;
 
-/// What a rod that is mounted anew deflects otherwise along its loads, as a share, 1 σ: flange and
-/// screws give way to another degree each time.
-const MOUNTED_ANEW: f64 = 0.005;
+/// What a rod that is mounted anew deflects otherwise along its loads, as a share, 1 σ, at least
+/// and at most: flange and screws give way to another degree each time.
+const MOUNTED_ANEW: (f64, f64) = (0.0005, 0.005);
+/// Of what sessions differ by as a whole a single one may be the cause.
+const OF_ALL: f64 = 0.5;
 /// Sessions that have roots of their own, at most: each is a column.
 const MOST_SESSIONS: usize = 50;
 
@@ -159,6 +165,7 @@ fn roots(
     if !(2..=MOST_SESSIONS).contains(&count) {
         return Vec::new();
     }
+    let mounted = session_scatter(data, count).clamp(MOUNTED_ANEW.0, MOUNTED_ANEW.1);
     let mut all = Vec::new();
     for (way, [bending, torsion]) in [("bending", [1.0, 0.0]), ("torsion", [0.0, 1.0])] {
         let mut softer = rod.clone();
@@ -171,7 +178,7 @@ fn roots(
             if is_along { (more / bent).abs() } else { 0.0 }
         };
         let most = data.iter().zip(more.iter().zip(deflections)).map(share).fold(0.0, f64::max);
-        let times = if most > 0.0 { MOUNTED_ANEW / most } else { 0.0 };
+        let times = if most > 0.0 { mounted / most } else { 0.0 };
         for session in 0..count {
             let own = data.iter().find(|d| d.session_number == session);
             let name = own.and_then(|d| d.session.as_deref()).unwrap_or("without a name");
@@ -192,6 +199,27 @@ fn roots(
     all
 }
 
+/// How far apart the slopes Σ y·ŷ/Σ ŷ² of a line along its loads are from session to session, ŷ by
+/// the base model, as a share, 1 σ: the largest of all lines. One session may be far off; of two
+/// nobody knows which.
+fn session_scatter(data: &[Datum], count: usize) -> f64 {
+    let line = numbered(data.iter().map(Datum::line_key));
+    // y·ŷ and ŷ² by line and session
+    let mut sums: BTreeMap<usize, Vec<[f64; 2]>> = BTreeMap::new();
+    for (d, line) in data.iter().zip(line).filter(|(d, _)| d.channel == d.direction.axis) {
+        let sum = &mut sums.entry(line).or_insert_with(|| vec![[0.0; 2]; count])[d.session_number];
+        sum[0] += d.measured * d.predicted;
+        sum[1] += d.predicted * d.predicted;
+    }
+    let of_line = |own: &Vec<[f64; 2]>| {
+        let slopes: Vec<f64> =
+            own.iter().filter(|sum| sum[1] > 0.0).map(|[product, square]| product / square).collect();
+        let whole = standard_deviation(&slopes).filter(|_| slopes.len() > 2)?;
+        Some((mad(&slopes)?).max(OF_ALL * whole))
+    };
+    sums.values().filter_map(of_line).fold(0.0, f64::max)
+}
+
 /// Which pair of load and read station each datum has.
 struct Pairs<'a> {
     of_datum: Vec<usize>,
@@ -206,7 +234,7 @@ impl<'a> Pairs<'a> {
             let (load, read) = stations(rod, d);
             (load.to_bits(), read.to_bits())
         };
-        let of_datum = crate::diagnosis::rig::numbering::numbered(data.iter().map(bits));
+        let of_datum = numbered(data.iter().map(bits));
         let mut first = Vec::new();
         for (i, &number) in of_datum.iter().enumerate() {
             if number == first.len() {

@@ -49,15 +49,9 @@ impl Columns {
             size: 10.0,
             bounds: (f64::NEG_INFINITY, f64::INFINITY),
         };
-        self.candidates.push(Candidate {
-            effect,
-            location: Location::Named(location.into()),
-            parameters: vec![parameter; columns.ncols()],
-            weight: 1.0,
-            is_alternative: false,
-            opposite: None,
-            is_nonparametric,
-        });
+        let location = Location::Named(location.into());
+        let candidate = Candidate::new(effect, location, vec![parameter; columns.ncols()]);
+        self.candidates.push(Candidate { is_nonparametric, ..candidate });
         self.columns.push(columns);
     }
 

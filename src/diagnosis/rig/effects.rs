@@ -11,6 +11,7 @@
 
 pub(super) mod dimension;
 pub(super) mod display;
+pub(super) mod drift;
 pub mod entry;
 pub(super) mod events;
 pub(super) mod history;

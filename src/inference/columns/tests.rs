@@ -30,14 +30,8 @@ fn recording(count: usize) -> Recording {
         size: 3.0,
         bounds: (f64::NEG_INFINITY, f64::INFINITY),
     };
-    let candidate = |parameters: usize| Candidate {
-        effect: &UNKNOWN,
-        location: Location::Named(String::new()),
-        parameters: vec![parameter.clone(); parameters],
-        weight: 1.0,
-        is_alternative: false,
-        opposite: None,
-        is_nonparametric: false,
+    let candidate = |parameters: usize| {
+        Candidate::new(&UNKNOWN, Location::Named(String::new()), vec![parameter.clone(); parameters])
     };
     let mut candidates = vec![candidate(2), candidate(1), candidate(1)];
     candidates.extend(steps.iter().map(|_| candidate(1)));

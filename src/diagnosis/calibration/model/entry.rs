@@ -95,15 +95,7 @@ impl Entry {
     /// A candidate as likely as its effect's others, of an effect that acts in one way only.
     pub fn new(effect: &'static Effect, location: Location, parameters: Vec<(Parameter, Column)>) -> Entry {
         let (parameters, columns) = parameters.into_iter().unzip();
-        let candidate = Candidate {
-            effect,
-            location,
-            parameters,
-            weight: 1.0,
-            is_alternative: false,
-            opposite: None,
-            is_nonparametric: false,
-        };
+        let candidate = Candidate::new(effect, location, parameters);
         Entry { candidate, law: Law::Only, columns }
     }
 

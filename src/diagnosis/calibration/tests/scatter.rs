@@ -175,6 +175,6 @@ fn a_step_is_seen_in_the_angles_of_joints_that_move() {
     let motions = [Motion::Revolute, Motion::Revolute, Motion::Prismatic];
     let steps = model::written_angles::written_steps(&recording, &motions);
     assert!((steps[0] / (0.05 * DEG) - 1.0).abs() < 1e-9, "{steps:?}");
-    // one that stands still is off by the same everywhere, and one that slides has no angle
+    // a joint that does not move is off by the same everywhere, and a prismatic one has no angle
     assert_eq!(steps[1..], [0.0, 0.0]);
 }

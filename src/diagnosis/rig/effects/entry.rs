@@ -117,15 +117,7 @@ pub(in crate::diagnosis::rig) fn candidate(
     location: Location,
     parameters: Vec<Parameter>,
 ) -> Candidate {
-    Candidate {
-        effect,
-        location,
-        parameters,
-        weight: 1.0,
-        is_alternative: false,
-        opposite: None,
-        is_nonparametric: false,
-    }
+    Candidate::new(effect, location, parameters)
 }
 
 /// Gives those entries that are `main` as much weight together as all others together: the place

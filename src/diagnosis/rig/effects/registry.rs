@@ -1,7 +1,9 @@
 //! All effects of a rig, in the order of preference among equals: the single source of names.
 
 use super::entry::RigEffect;
-use super::{dimension, display, events, history, load, mistakes, pipe, points, sensor, structure, zeros};
+use super::{
+    dimension, display, drift, events, history, load, mistakes, pipe, points, sensor, structure, zeros,
+};
 use crate::diagnosis::rig::model::RigModel;
 use crate::inference::{Effect, Term, WrittenTo};
 use crate::rod::Rod;
@@ -29,7 +31,7 @@ pub static ALL: [&RigEffect; 23] = [
     &history::CREEP,
     &history::HYSTERESIS,
     &history::THERMAL_SOFTENING,
-    &sensor::THERMAL_DRIFT,
+    &drift::THERMAL_DRIFT,
     &events::SLIP,
 ];
 

@@ -76,15 +76,7 @@ impl Along {
 
 /// A rival for physics that nobody has named.
 pub(super) fn rival(location: Location, parameters: Vec<Parameter>) -> Candidate {
-    Candidate {
-        effect: &UNKNOWN,
-        location,
-        parameters,
-        weight: 1.0,
-        is_alternative: false,
-        opposite: None,
-        is_nonparametric: true,
-    }
+    Candidate { is_nonparametric: true, ..Candidate::new(&UNKNOWN, location, parameters) }
 }
 
 /// Which way something moves sensors under loads that point both ways.

@@ -214,7 +214,9 @@ impl<'a> Search<'a> {
     fn excludes(&self, term: &Term, index: usize) -> bool {
         let (old, new) = (&self.model.candidates()[term.candidate], &self.model.candidates()[index]);
         let are_near = || self.model.steps_apart(term.candidate, index).is_some_and(|n| n < NO_STEP);
-        term.candidate == index || old.is_instead_of(new) || are_near()
+        term.candidate == index
+            || (old.is_alternative && new.is_alternative && old.effect == new.effect)
+            || are_near()
     }
 
     /// Other forms of the law that a candidate is one of: with the same parameters, or with more

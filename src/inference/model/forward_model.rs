@@ -27,9 +27,6 @@ pub struct Candidate {
     /// True for one of several forms of the same thing, such as laws of creep: a hypothesis holds
     /// one of them at most.
     pub is_alternative: bool,
-    /// Name of an effect that does the same with the other sign: a hypothesis holds one of the two
-    /// at most, since both could grow without end.
-    pub opposite: Option<&'static str>,
     /// True for a smooth curve that stands for physics nobody has named: it competes, but is never
     /// a finding.
     pub is_nonparametric: bool,
@@ -170,23 +167,7 @@ impl Candidate {
     /// alternative of another one nor a curve that nobody has named.
     pub fn new(effect: &'static Effect, location: Location, parameters: Vec<Parameter>) -> Candidate {
         let (is_alternative, is_nonparametric) = (false, false);
-        Candidate {
-            effect,
-            location,
-            parameters,
-            weight: 1.0,
-            is_alternative,
-            opposite: None,
-            is_nonparametric,
-        }
-    }
-
-    /// True where a hypothesis holds this or another one, never both.
-    pub fn is_instead_of(&self, other: &Candidate) -> bool {
-        let is_opposite = |a: &Candidate, b: &Candidate| a.opposite == Some(b.effect.name);
-        (self.is_alternative && other.is_alternative && self.effect == other.effect)
-            || is_opposite(self, other)
-            || is_opposite(other, self)
+        Candidate { effect, location, parameters, weight: 1.0, is_alternative, is_nonparametric }
     }
 
     /// The candidate at its neutral values.

@@ -118,7 +118,7 @@ impl Search<'_> {
         for i in 0..paired.len() {
             for j in i + 1..paired.len() {
                 let (a, b) = (&candidates[paired[i]], &candidates[paired[j]]);
-                if a.is_instead_of(b) {
+                if a.is_alternative && b.is_alternative && a.effect == b.effect {
                     continue;
                 }
                 let prior = self.prior_of(paired[i]) + self.prior_of(paired[j]);

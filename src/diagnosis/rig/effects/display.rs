@@ -4,7 +4,6 @@ use super::entry::{
     Context, Entry, RigEffect, Usual, alternative, candidate, number, of_action, out_of_the_readings,
     parameter, size,
 };
-use super::load::FRICTION;
 use super::places::measured_channels;
 use crate::diagnosis::rig::mechanics::action::Action;
 use crate::diagnosis::rig::mechanics::display::{Display, Follows};
@@ -118,9 +117,7 @@ fn displays(context: &mut Context) -> Vec<Entry> {
         let mut add = |location: Location, weight: f64, is_its: &dyn Fn(&Datum) -> bool| {
             let display = Display::of(data, follows, is_its);
             let candidate = candidate(&SENSOR_LAG.effect, location, vec![usual.clone()]);
-            // a cell that lags keeps of each change what friction in the slide adds to it
-            let opposite = is_imposed.then_some(FRICTION.effect.name);
-            let candidate = Candidate { weight, opposite, ..candidate };
+            let candidate = Candidate { weight, ..candidate };
             entries.push(alternative((candidate, vec![Action::Display(display.into())])));
         };
         let all = match form {

@@ -124,12 +124,15 @@ impl RigModel {
     }
 
     /// Stated noise of an offset, m; where only loads were read or only their noise is stated, that
-    /// of a load, with that of the displacement.
+    /// of a load, with that of the displacement unless a mean was imposed.
     pub(super) fn stated_noise(&self) -> Option<f64> {
         let header = &self.readings.header;
         let of_load = self.per_newton().zip(header.load_noise).map(|(per_newton, noise)| per_newton * noise);
-        match (header.noise, of_load) {
-            (Some(a), Some(_)) if self.data.iter().any(|datum| datum.imposed.is_none()) => Some(a),
+        if self.data.iter().any(|datum| datum.imposed.is_none()) {
+            return header.noise.or(of_load);
+        }
+        let is_as_read = self.data.iter().any(|d| d.imposed.is_some_and(|imposed| imposed.sd == 0.0));
+        match (header.noise.filter(|_| is_as_read), of_load) {
             (Some(a), Some(b)) => Some(a.hypot(b)),
             (a, b) => a.or(b),
         }

@@ -6,6 +6,7 @@ pub mod columns;
 pub mod datum;
 pub mod evidence;
 mod multiples;
+pub mod passing;
 pub mod resolution;
 mod rezeroed;
 mod settings;

@@ -48,6 +48,18 @@ const OF_TIME: &[Form] = &[
     Form::Polynomial(2),
     Form::Polynomial(3),
 ];
+/// Where a displacement goes to and fro as often as this, and more.
+const OF_TIME_OF_CYCLES: &[Form] = &[
+    Form::Threshold,
+    Form::Step,
+    Form::Approach,
+    Form::Decay,
+    Form::Logarithm,
+    Form::Polynomial(1),
+    Form::Polynomial(2),
+    Form::Polynomial(3),
+];
+const CYCLES: usize = 2;
 /// From anywhere on: temperature.
 const OF_A_LEVEL: &[Form] = OF_A_SIDE;
 /// Of two signs, and of several decades.
@@ -387,9 +399,12 @@ impl Recording<'_> {
             Some(values.into_iter().map(|value| value - least).collect())
         };
         let plain = |variable, values, forms| Common { variable, values, forms, courses: Vec::new() };
-        let time = all(&|d| d.time).map(|t| plain(SiteVariable::Time, t, OF_TIME));
+        // what swings as the slide does follows the slide
+        let is_cyclic = self.data.iter().any(|d| d.motion.is_some_and(|motion| motion.cycle >= CYCLES));
+        let of_time = if is_cyclic && self.deflected.is_imposed { OF_TIME_OF_CYCLES } else { OF_TIME };
+        let time = all(&|d| d.time).map(|t| plain(SiteVariable::Time, t, of_time));
         let order = all(&|d| Some(d.order as f64));
-        let order = order.map(|n| plain(SiteVariable::Order, n, OF_TIME));
+        let order = order.map(|n| plain(SiteVariable::Order, n, of_time));
         let temperature = all(&|d| d.temperature).map(|values| Common {
             courses: self.whole(values.first().copied().unwrap_or_default()).into_iter().collect(),
             ..plain(SiteVariable::Temperature, values, OF_A_LEVEL)

@@ -17,12 +17,16 @@ use super::super::numbering::numbered;
 use super::along::Coordinate;
 use crate::diagnosis::rig::mechanics::load_history::{dwell, instants, runs};
 use crate::diagnosis::rig::recording::datum::Datum;
+use crate::diagnosis::rig::recording::passing::speeds;
 use crate::rig::readings::Direction;
+use crate::statistics::median;
 
 /// Waiting times that differ by less than this factor are the same.
 const SAME_WAIT: f64 = 1.1;
 /// And speeds: what is fast and slow alike follows the sign of the motion alone.
 const SAME_SPEED: f64 = 1.25;
+/// What is slower than this share of the usual speed stands still.
+const STILL: f64 = 0.1;
 
 /// The change of the load before each datum.
 pub(in crate::diagnosis::rig) struct Before {
@@ -64,7 +68,8 @@ impl Before {
 
     /// How fast the load was changed to what it is, N/s (m/s of an imposed displacement):
     /// v = (F − F′)/Δt, positive where it grew, Δt from the reading before until it hung, else
-    /// until it is read; at the first reading of a run the usual one. Nothing where it is always
+    /// until it is read; at the first reading of a run the usual one; of a slide that is read on its
+    /// way, how fast it [passes](crate::diagnosis::rig::recording::passing). Nothing where it is always
     /// the same at the same load, or but for its sign everywhere.
     pub fn speeds(&self, data: &[Datum]) -> Option<Vec<f64>> {
         let times: Vec<f64> = data.iter().map(|d| d.time).collect::<Option<_>>()?;
@@ -72,7 +77,14 @@ impl Before {
         let mut speed = vec![0.0; data.len()];
         for run in runs(data) {
             let mut before: Option<f64> = None;
-            for instant in instants(data, &run) {
+            let instants = instants(data, &run);
+            if let Some(passing) = passing(data, &times, &instants) {
+                for (instant, v) in instants.iter().zip(passing) {
+                    instant.iter().for_each(|&i| speed[i] = f64::from(data[i].direction.sign) * v);
+                }
+                continue;
+            }
+            for instant in instants {
                 for &i in &instant {
                     let (sign, change) = (f64::from(data[i].direction.sign), data[i].drive() - self.load[i]);
                     let took = before.map_or(usual, |before| data[i].loaded_at.unwrap_or(times[i]) - before);
@@ -103,11 +115,25 @@ impl Before {
     }
 }
 
-/// arsinh(v/v₀) of speeds, v₀ the slowest: as many columns for a decade as for the next.
+/// arsinh(v/v₀) of speeds, v₀ the slowest, or a share of the usual one: as many columns for a decade
+/// as for the next, and none for how still a slide is that stands still.
 pub(super) fn by_decade(speeds: &[f64]) -> Coordinate {
-    let sizes = speeds.iter().map(|v| v.abs()).filter(|v| *v > 0.0);
-    let slowest = sizes.fold(f64::INFINITY, f64::min);
+    let sizes: Vec<f64> = speeds.iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
+    let still = STILL * median(&sizes).unwrap_or_default();
+    let slowest = sizes.into_iter().fold(f64::INFINITY, f64::min).max(still);
     speeds.iter().map(|v| Some((v / slowest).asinh())).collect()
+}
+
+/// How fast a slide passes the displacements that were imposed at the instants of a run, m/s;
+/// nothing where it stood still at them.
+fn passing(data: &[Datum], times: &[f64], instants: &[Vec<usize>]) -> Option<Vec<f64>> {
+    let imposed = |instant: &Vec<usize>| {
+        let imposed = instant.iter().find_map(|&i| data[i].imposed)?;
+        Some((imposed, times[instant[0]]))
+    };
+    let own: Vec<_> = instants.iter().map(imposed).collect::<Option<_>>()?;
+    let (u, times): (Vec<f64>, Vec<f64>) = own.iter().map(|(own, time)| (own.displacement, *time)).unzip();
+    speeds(&u, &times, own.iter().any(|(own, _)| own.sd > 0.0))
 }
 
 /// Is a coordinate not always the same at the same load?

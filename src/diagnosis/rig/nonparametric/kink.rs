@@ -67,6 +67,9 @@ impl Way {
     }
 }
 
+/// Slopes change within this share of the largest displacement, where displacements scatter.
+const NEAR_END: f64 = 0.95;
+
 /// Other slopes of some of the data; together they have the prior of one curve.
 fn kinks(data: &[Datum], deflections: &[f64], place: &str, group: &[usize]) -> Vec<Entry> {
     let loaded = |way: Way| group.iter().copied().filter(move |&i| way.includes(data[i].drive()));
@@ -76,7 +79,12 @@ fn kinks(data: &[Datum], deflections: &[f64], place: &str, group: &[usize]) -> V
     for way in ways {
         // the slope of all loads is the stiffness; two of three slopes are as good as all
         let first = if way == Way::Against { vec![0.0] } else { Vec::new() };
-        let knots = knots(loaded(way).map(|i| data[i].drive().abs()).collect());
+        let mut knots = knots(loaded(way).map(|i| data[i].drive().abs()).collect());
+        if group.iter().any(|&i| !data[i].is_at_setting()) {
+            // the farthest of readings that scatter are those that scatter outwards
+            let farthest = knots.iter().copied().fold(0.0, f64::max);
+            knots.retain(|knot| *knot < NEAR_END * farthest);
+        }
         for knot in first.into_iter().chain(knots) {
             let beyond = loaded(way).filter(|&i| data[i].drive().abs() > knot);
             let weight = |i: usize| (i, deflections[i] * (1.0 - knot / data[i].drive().abs()));
@@ -85,12 +93,13 @@ fn kinks(data: &[Datum], deflections: &[f64], place: &str, group: &[usize]) -> V
                 continue;
             }
             let at = with_unit(data, group, knot);
+            let what = if data[group[0]].imposed.is_some() { "displacement" } else { "load" };
             let readings = if place == ALL_DEFLECTIONS { "all readings alike" } else { place };
             let location = Location::Curve {
-                label: format!("load{} beyond {at}, {place}", way.in_sentences()),
+                label: format!("{what}{} beyond {at}, {place}", way.in_sentences()),
                 follows: match knot {
                     0.0 => format!("is other for loads against the axis ({readings})"),
-                    _ => format!("changes its slope at a load of {at}{} ({readings})", way.in_sentences()),
+                    _ => format!("changes its slope at a {what} of {at}{} ({readings})", way.in_sentences()),
                 },
                 along: Some(if way == Way::Both { Variable::Load } else { Variable::SignedLoad }),
             };

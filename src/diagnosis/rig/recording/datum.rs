@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::chronicle::{Chronicle, Motion};
 use super::rezeroed::{Shown, is_zeroed_by_direction};
-use super::settings::settings;
+use super::settings::{Setting, settings};
 use crate::diagnosis::rig::numbering::numbered;
 use crate::inference::RunName;
 use crate::rig::readings::{Axis, Direction, Driven, Phase, Reading, Readings};
@@ -76,10 +76,10 @@ pub struct Datum {
 /// A displacement that was imposed along the axis of the load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Imposed {
-    /// Along the positive axis, as it was read, m.
+    /// Along the positive axis, m: the setting that was read, see [`settings`](super::settings).
     pub displacement: f64,
-    /// The setting that it is a reading of: see [`settings`](super::settings).
-    pub set: f64,
+    /// Its standard deviation where that is a mean, m, which all its readings share; else 0.
+    pub sd: f64,
     /// What a newton of the measured load counts, m/N: one number for all loads of a recording, its
     /// largest displacement over its largest load.
     pub per_newton: f64,
@@ -94,23 +94,13 @@ impl Datum {
     /// What was set: the load along the positive axis (N), or the displacement that was imposed
     /// (m).
     pub fn drive(&self) -> f64 {
-        self.imposed.map_or(self.signed_load(), |imposed| imposed.set)
-    }
-
-    /// The same as it was read.
-    pub(in crate::diagnosis::rig) fn drive_as_read(&self) -> f64 {
         self.imposed.map_or(self.signed_load(), |imposed| imposed.displacement)
     }
 
-    /// What the base model predicts of what was set, m: it does not scatter as a displacement does
-    /// that was read.
-    pub(in crate::diagnosis::rig) fn predicted_as_set(&self) -> f64 {
-        match self.imposed {
-            Some(Imposed { displacement, set, .. }) if displacement != 0.0 => {
-                self.predicted * set / displacement
-            }
-            _ => self.predicted,
-        }
+    /// True where what was set can be set again. Displacements that scatter are no setting: those
+    /// that are read alike are off by the same, and their loads too.
+    pub(in crate::diagnosis::rig) fn is_at_setting(&self) -> bool {
+        self.imposed.is_none_or(|imposed| imposed.sd > 0.0)
     }
 
     /// What a linear rod of this compliance (m/N) shows: the offset C·F, or the load u/C as
@@ -176,7 +166,7 @@ pub fn recorded(readings: &Readings) -> Vec<Datum> {
 
 /// Makes the load what was measured of all data along their loads, and the offset what was imposed;
 /// `settings` of the rows of the file.
-fn impose(data: &mut [Datum], settings: &[Option<f64>]) {
+fn impose(data: &mut [Datum], settings: &[Option<Setting>]) {
     let is_along = |datum: &Datum| datum.channel == datum.direction.axis;
     let largest = |value: &dyn Fn(&Datum) -> f64| {
         data.iter().filter(|d| is_along(d)).fold(0.0, |most: f64, datum| most.max(value(datum)))
@@ -187,8 +177,8 @@ fn impose(data: &mut [Datum], settings: &[Option<f64>]) {
     }
     let per_newton = displacement / load;
     for datum in data.iter_mut().filter(|datum| is_along(datum)) {
-        let set = settings[datum.row - 1].unwrap_or(datum.measured);
-        datum.imposed = Some(Imposed { displacement: datum.measured, set, per_newton });
+        let set = settings[datum.row - 1].unwrap_or(Setting::as_read(datum.measured));
+        datum.imposed = Some(Imposed { displacement: set.value, sd: set.sd, per_newton });
         datum.measured = per_newton * datum.signed_load();
         if datum.motion.is_none() {
             let away = if datum.is_unloading() { -1.0 } else { 1.0 };

@@ -1,9 +1,11 @@
 //! What the engine knows about a rig's recording besides the residual: what repeats, what belongs
 //! together, what to hold out, and along which numbers a mismatch may be structured.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{DMatrix, DVector};
 
-use super::datum::Datum;
+use super::datum::{Datum, Imposed};
 use super::resolution::resolution;
 use super::spread;
 use crate::diagnosis::rig::numbering::numbered;
@@ -41,9 +43,10 @@ pub fn of_data(
         least_offset,
         is_robust: true,
         most_scatter: most_scatter(data),
-        replicate_group: numbered(data.iter().map(|d| {
+        replicate_group: numbered(data.iter().enumerate().map(|(i, d)| {
             let sign = d.imposed.map_or(d.direction.sign, |_| 0);
-            (d.session_number, d.line_key(), sign, d.drive().abs().to_bits(), d.drive() < 0.0, d.phase)
+            let set = (d.drive().abs().to_bits(), d.drive() < 0.0);
+            (d.session_number, d.line_key(), sign, set, d.phase, (!d.is_at_setting()).then_some(i))
         })),
         // the zero of a run is that of one sensor at one place
         shared: numbered(data.iter().map(|d| (d.run, d.sensor()))),
@@ -69,13 +72,34 @@ fn most_scatter(data: &[Datum]) -> Option<f64> {
     Some((SCATTER * largest).max(STEPS_OF_DISPLAY * resolution(data)))
 }
 
-/// What large deflections add (`large`), which the linear model leaves out; whether the readings
-/// show it is not the diagnosis' question.
+/// What large deflections add (`large`), which the linear model leaves out, whether or not the
+/// readings show it; and what each mean that was imposed is off by, which moves all loads of it.
 fn background(data: &[Datum], large: Option<DVector<f64>>) -> DMatrix<f64> {
-    match large {
-        Some(large) => DMatrix::from_columns(&[large]),
-        None => DMatrix::zeros(data.len(), 0),
+    let mut columns: Vec<DVector<f64>> = large.into_iter().collect();
+    // u² and u·c·F of each line
+    let mut sums: BTreeMap<_, [f64; 2]> = BTreeMap::new();
+    let mut settings: BTreeMap<_, Vec<usize>> = BTreeMap::new();
+    for (i, d) in data.iter().enumerate() {
+        let Some(Imposed { displacement, sd, .. }) = d.imposed else { continue };
+        let sum = sums.entry(d.line_key()).or_default();
+        sum[0] += displacement * displacement;
+        sum[1] += displacement * d.measured;
+        if sd > 0.0 {
+            settings.entry((d.line_key(), displacement.to_bits())).or_default().push(i);
+        }
     }
+    for ((line, _), own) in settings {
+        let [square, product] = sums[&line];
+        let mut column = DVector::zeros(data.len());
+        for i in own {
+            column[i] = product / square * data[i].imposed.map_or(0.0, |imposed| imposed.sd);
+        }
+        columns.push(column);
+    }
+    if columns.is_empty() {
+        return DMatrix::zeros(data.len(), 0);
+    }
+    DMatrix::from_columns(&columns)
 }
 
 /// The session of each datum, where there are several.
@@ -102,7 +126,7 @@ fn zeros(data: &[Datum]) -> (DMatrix<f64>, Vec<f64>) {
 /// readings without a rod.
 pub fn slopes(data: &[Datum], line: &[usize]) -> DMatrix<f64> {
     let count = line.iter().max().map_or(0, |last| last + 1);
-    DMatrix::from_fn(data.len(), count, |i, j| if line[i] == j { data[i].drive_as_read() } else { 0.0 })
+    DMatrix::from_fn(data.len(), count, |i, j| if line[i] == j { data[i].drive() } else { 0.0 })
 }
 
 /// Three to five folds of whole trials. Of one or two trials whole cycles are held out where the

@@ -3,7 +3,13 @@
 //! A displacement that is set again and again is read a little otherwise each time. Whatever
 //! follows it from reading to reading (a wave of the step between two settings, a curve with a kink
 //! at each) follows the scatter of these readings, and takes it off the loads. So readings of one
-//! setting count as that setting wherever the rod is not its straight line: their mean.
+//! setting count as that setting, their mean, unless the loads follow each of them, which was
+//! imposed then:
+//!
+//! ```text
+//! f = r·k·e     e, f: the changes of displacement and load from one visit of a setting to the next
+//!               that came from the same other setting;  k: the stiffness;  r = 1 or 0
+//! ```
 
 use std::collections::BTreeMap;
 
@@ -16,45 +22,157 @@ const APART: f64 = 5.0;
 const READ: usize = 2;
 /// Readings of one lie within this share of the largest displacement.
 const WITHIN: f64 = 0.005;
+/// What share of the readings are of settings at least, where any are.
+const MOST: f64 = 0.9;
+/// The r beyond which loads follow each reading, and how well it is known at least.
+const FOLLOWS: f64 = 0.5;
+const KNOWN: f64 = 0.25;
 
-/// Of each row along the positive axis: the load, N, or the displacement, m, where it was read.
-pub fn settings(rows: &[Reading], driven: Driven) -> Vec<Option<f64>> {
+/// What was set.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setting {
+    /// Along the positive axis: a load, N, or a displacement, m.
+    pub value: f64,
+    /// Standard deviation of a mean, which all its readings share; 0 of what was read once.
+    pub sd: f64,
+}
+
+impl Setting {
+    pub fn as_read(value: f64) -> Setting {
+        Setting { value, sd: 0.0 }
+    }
+}
+
+/// Of each row; of a displacement where it was read.
+pub fn settings(rows: &[Reading], driven: Driven) -> Vec<Option<Setting>> {
     if driven == Driven::Load {
-        return rows.iter().map(|row| Some(row.signed_load())).collect();
+        return rows.iter().map(|row| Some(Setting::as_read(row.signed_load()))).collect();
     }
     let read = |row: &Reading| row.offset[row.direction.axis.index()];
-    let mut settings: Vec<Option<f64>> = rows.iter().map(read).collect();
+    let mut settings: Vec<Option<Setting>> = rows.iter().map(|row| read(row).map(Setting::as_read)).collect();
     // of each axis and the place where its displacement is read
     let mut places: BTreeMap<(Axis, Option<u64>), Vec<usize>> = BTreeMap::new();
-    for (i, row) in rows.iter().enumerate().filter(|(i, _)| settings[*i].is_some()) {
+    for (i, row) in rows.iter().enumerate().filter(|(_, row)| read(row).is_some()) {
         places.entry((row.direction.axis, row.read_station.map(f64::to_bits))).or_default().push(i);
     }
     for own in places.into_values() {
-        let values: Vec<f64> = own.iter().filter_map(|&i| settings[i]).collect();
-        for (i, set) in own.into_iter().zip(recurring(&values)) {
-            settings[i] = Some(set);
+        let place = Place::of(rows, in_order(rows, &own));
+        if let Some(means) = recurring(&place.displacement).filter(|means| !place.follows(means)) {
+            place.rows.iter().zip(means).for_each(|(&i, mean)| settings[i] = Some(mean));
         }
     }
     settings
 }
 
-/// The mean of those near to each, where they recur; else itself.
-fn recurring(values: &[f64]) -> Vec<f64> {
+/// Rows session by session and trial by trial, in the order of their times, or as they stand.
+fn in_order(rows: &[Reading], own: &[usize]) -> Vec<usize> {
+    let mut courses: BTreeMap<(Option<&str>, Option<&str>), Vec<usize>> = BTreeMap::new();
+    for &i in own {
+        courses.entry((rows[i].session.as_deref(), rows[i].trial.as_deref())).or_default().push(i);
+    }
+    let of_course = |mut course: Vec<usize>| {
+        if course.iter().all(|&i| rows[i].time.is_some()) {
+            let time = |i: usize| rows[i].time.unwrap_or_default();
+            course.sort_by(|&a, &b| time(a).total_cmp(&time(b)));
+        }
+        course
+    };
+    courses.into_values().flat_map(of_course).collect()
+}
+
+/// Displacements along an axis that were read at one place, in their order, and their loads.
+struct Place {
+    rows: Vec<usize>,
+    displacement: Vec<f64>,
+    load: Vec<f64>,
+}
+
+impl Place {
+    fn of(readings: &[Reading], rows: Vec<usize>) -> Place {
+        let axis = |i: usize| readings[i].direction.axis.index();
+        Place {
+            displacement: rows.iter().filter_map(|&i| readings[i].offset[axis(i)]).collect(),
+            load: rows.iter().map(|&i| readings[i].signed_load()).collect(),
+            rows,
+        }
+    }
+
+    /// Do the loads follow each reading of a setting?
+    fn follows(&self, means: &[Setting]) -> bool {
+        let mut last: BTreeMap<[Option<u64>; 2], usize> = BTreeMap::new();
+        let (mut visits, mut before) = (Vec::new(), None);
+        for (k, mean) in means.iter().enumerate() {
+            let at = Some(mean.value.to_bits());
+            if let Some(other) = last.insert([before, at], k) {
+                let change = |values: &[f64]| values[k] - values[other];
+                visits.push((change(&self.displacement), change(&self.load)));
+            }
+            before = at;
+        }
+        let all: Vec<(f64, f64)> = self.displacement.iter().copied().zip(self.load.iter().copied()).collect();
+        let (Some(own), Some(all)) = (Line::of(&visits), Line::of(&all)) else { return false };
+        own.sd <= KNOWN * all.slope.abs() && own.slope / all.slope > FOLLOWS
+    }
+}
+
+/// A straight line through points, and the standard deviation of its slope.
+struct Line {
+    slope: f64,
+    sd: f64,
+}
+
+impl Line {
+    /// Nothing where the points do not say.
+    fn of(points: &[(f64, f64)]) -> Option<Line> {
+        const NUMBERS: f64 = 2.0;
+        let count = points.len() as f64;
+        let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), own| (x + own.0 / count, y + own.1 / count));
+        let sum = |product: fn(f64, f64) -> f64| {
+            points.iter().map(|own| product(own.0 - x, own.1 - y)).sum::<f64>()
+        };
+        let (xx, xy, yy) = (sum(|x, _| x * x), sum(|x, y| x * y), sum(|_, y| y * y));
+        let slope = xy / xx;
+        let sd = ((yy - slope * xy).max(0.0) / (count - NUMBERS) / xx).sqrt();
+        (count > NUMBERS && slope.is_finite() && sd.is_finite()).then_some(Line { slope, sd })
+    }
+}
+
+/// The mean of those near to each, or itself where these are too far apart; nothing where no value
+/// recurs.
+fn recurring(values: &[f64]) -> Option<Vec<Setting>> {
     let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let step = step_of(values);
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
-    let mut set = values.to_vec();
-    let mut groups: Vec<Vec<usize>> = split(&order, values, step).unwrap_or_default();
+    let mut set: Vec<Setting> = values.iter().copied().map(Setting::as_read).collect();
+    let mut groups: Vec<Vec<usize>> = split(&order, values, step)?;
+    let mut means = Vec::new();
     while let Some(own) = groups.pop() {
         if let Some(parts) = split(&own, values, step) {
             groups.extend(parts);
         } else if values[own[own.len() - 1]] - values[own[0]] <= WITHIN * largest {
-            let mean = own.iter().map(|&i| values[i]).sum::<f64>() / own.len() as f64;
-            own.iter().for_each(|&i| set[i] = mean);
+            means.push(own);
         }
     }
-    set
+    if (means.iter().map(Vec::len).sum::<usize>() as f64) < MOST * values.len() as f64 {
+        return None;
+    }
+    let mean = |own: &[usize]| own.iter().map(|&i| values[i]).sum::<f64>() / own.len() as f64;
+    let (mut squares, mut free) = (0.0, 0.0);
+    for own in &means {
+        let value = mean(own);
+        squares += own.iter().map(|&i| (values[i] - value).powi(2)).sum::<f64>();
+        free += own.len() as f64 - 1.0;
+        own.iter().for_each(|&i| set[i].value = value);
+    }
+    let variance = if free > 0.0 { squares / free } else { 0.0 };
+    // what is always rounded the same way is not known better for being read again
+    let rounding = if variance < step * step { step * step / 12.0 } else { 0.0 };
+    for own in &means {
+        let sd = (variance / own.len() as f64 + rounding).sqrt();
+        own.iter().for_each(|&i| set[i].sd = sd);
+    }
+    Some(set)
 }
 
 /// Parts that are far from each other beside what each is wide, or a step of the display, and of
@@ -91,7 +209,9 @@ mod tests {
     use crate::units::UM;
 
     fn set(values: &[f64]) -> Vec<f64> {
-        recurring(&values.iter().map(|value| value * UM).collect::<Vec<_>>()).iter().map(|u| u / UM).collect()
+        let read: Vec<f64> = values.iter().map(|value| value * UM).collect();
+        let set = recurring(&read).map(|set| set.iter().map(|own| own.value).collect());
+        set.unwrap_or(read).iter().map(|u| u / UM).collect()
     }
 
     #[test]
@@ -141,9 +261,11 @@ mod tests {
     fn loads_are_as_they_hang_and_each_axis_has_settings_of_its_own() {
         let text = "axis,load_n,dy_um,dz_um\ny,1,10,\n-y,2,-20,\nz,3,,10.5\n";
         let rows = Readings::from_text("f", text).unwrap().rows;
-        assert_eq!(settings(&rows, Driven::Load), [Some(1.0), Some(-2.0), Some(3.0)]);
-        let read = settings(&rows, Driven::Displacement);
-        let read: Vec<_> = read.into_iter().map(|own| own.map(|u| (u / UM * 10.0).round() / 10.0)).collect();
-        assert_eq!(read, [Some(10.0), Some(-20.0), Some(10.5)]);
+        let of = |driven, unit: f64| -> Vec<f64> {
+            let set = settings(&rows, driven).into_iter().flatten();
+            set.map(|own| (own.value / unit * 10.0).round() / 10.0).collect()
+        };
+        assert_eq!(of(Driven::Load, 1.0), [1.0, -2.0, 3.0]);
+        assert_eq!(of(Driven::Displacement, UM), [10.0, -20.0, 10.5]);
     }
 }

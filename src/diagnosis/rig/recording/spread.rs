@@ -112,20 +112,23 @@ fn stiffer(data: &[Datum]) -> [f64; 3] {
         own.fold(0.0, |most: f64, datum| most.max(value(datum).abs()))
     };
     Axis::ALL.map(|axis| {
-        let imposed = largest(axis, Datum::drive_as_read);
+        let imposed = largest(axis, Datum::drive);
         if imposed > 0.0 { largest(axis, |datum| datum.measured) / imposed } else { 1.0 }
     })
 }
 
 /// What the header says of both, where both were read: √((c·s_F)² + (c/C·s)²)/s of a load, c what a
-/// newton counts, C the compliance along its axis.
+/// newton counts, C the compliance along its axis; c·s_F/s where a mean was imposed.
 fn stated(data: &[Datum], header: &RigHeader) -> Option<Vec<f64>> {
     let (noise, load_noise) = (header.noise.filter(|noise| *noise > 0.0)?, header.load_noise?);
     data.iter().any(|datum| datum.imposed.is_none()).then_some(())?;
     let stiffer = stiffer(data);
     let of_datum = |datum: &Datum| {
         let of_displacement = stiffer[datum.direction.axis.index()] * noise;
-        let of_load = |imposed: Imposed| (imposed.per_newton * load_noise).hypot(of_displacement) / noise;
+        let of_load = |imposed: Imposed| {
+            let of_displacement = if imposed.sd > 0.0 { 0.0 } else { of_displacement };
+            (imposed.per_newton * load_noise).hypot(of_displacement) / noise
+        };
         datum.imposed.map_or(1.0, of_load)
     };
     Some(data.iter().map(of_datum).collect())
@@ -233,7 +236,7 @@ fn differences(axis: Axis, own: &[&Datum]) -> [Vec<f64>; 3] {
         ways.entry((datum.stations(), is_back, datum.run)).or_default().push(datum);
     }
     for way in ways.values_mut() {
-        way.sort_by(|a, b| a.drive_as_read().total_cmp(&b.drive_as_read()).then(a.order.cmp(&b.order)));
+        way.sort_by(|a, b| a.drive().total_cmp(&b.drive()).then(a.order.cmp(&b.order)));
     }
     let smooth = ways.values().flat_map(|way| way.windows(3).map(of_neighbours)).collect();
     let mut repeats = Vec::new();
@@ -254,7 +257,7 @@ fn differences(axis: Axis, own: &[&Datum]) -> [Vec<f64>; 3] {
 
 /// What a reading is off the line through its neighbours.
 fn of_neighbours(three: &[&Datum]) -> f64 {
-    let [x, y] = [Datum::drive_as_read, |datum: &Datum| datum.measured]
+    let [x, y] = [Datum::drive, |datum: &Datum| datum.measured]
         .map(|value: fn(&Datum) -> f64| [value(three[0]), value(three[1]), value(three[2])]);
     let t = if x[2] > x[0] { (x[1] - x[0]) / (x[2] - x[0]) } else { 0.5 };
     (y[1] - (1.0 - t) * y[0] - t * y[2]) / (1.0 + (1.0 - t).powi(2) + t * t).sqrt()
@@ -265,10 +268,10 @@ fn of_repeats(before: &[&Datum], after: &[&Datum]) -> Vec<f64> {
     let mut rest = after.iter().peekable();
     let mut differences = Vec::new();
     for one in before {
-        while rest.peek().is_some_and(|other| other.drive_as_read() < one.drive_as_read()) {
+        while rest.peek().is_some_and(|other| other.drive() < one.drive()) {
             rest.next();
         }
-        if let Some(other) = rest.next_if(|other| other.drive_as_read() == one.drive_as_read()) {
+        if let Some(other) = rest.next_if(|other| other.drive() == one.drive() && one.is_at_setting()) {
             differences.push(other.measured - one.measured);
         }
     }
@@ -405,6 +408,7 @@ mod tests {
         let [x, y, loads] = spread_in(&text(""));
         assert!(x == 1.0 && y == 1.0 && (7.0..13.0).contains(&loads), "{loads}");
         let [x, _, loads] = spread_in(&text("# noise_um = 2\n# noise_n = 0.03\n"));
-        assert!(x == 1.0 && (loads - 1.25).abs() < 0.02, "{loads}");
+        // means of what was imposed, whose own errors all loads of one share: 0.03 N of 50 µm/N
+        assert!(x == 1.0 && (loads - 0.75).abs() < 0.03, "{loads}");
     }
 }

@@ -91,7 +91,7 @@ fn a_load_that_drifts_has_newtons() {
 #[test]
 fn a_rod_that_relaxes_is_one_law_and_no_names() {
     const TIME: f64 = 120.0;
-    for seed in [8, 9, 17] {
+    for seed in [8, 9, 10, 11, 16, 18] {
         let found = cycles(seed, |loads, k| {
             let still_there = |j: usize| (-20.0 * (k - j) as f64 / TIME).exp() * (loads[j] - loads[j - 1]);
             loads[k] + 0.03 * (1..=k).map(still_there).sum::<f64>()

@@ -1,6 +1,8 @@
 //! A proposed law as what a file holds: a formula in the syntax of [`crate::expression`], with its
 //! constants.
 
+use nalgebra::DMatrix;
+
 use crate::inference::law::{Constant, Form, Law, Memory};
 use crate::rod::LawConstant;
 use crate::statistics::HALF_95;
@@ -70,6 +72,7 @@ pub(super) fn formula(law: &Law, x: &str, is_signed: bool, direction: usize) -> 
 
 /// The constants of a law.
 pub(super) fn constants(law: &Law) -> Vec<LawConstant> {
+    let correlation = written(&law.correlation);
     let own = |(k, constant): (usize, &Constant)| LawConstant {
         name: constant.symbol.clone(),
         value: digits(constant.value),
@@ -78,10 +81,29 @@ pub(super) fn constants(law: &Law) -> Vec<LawConstant> {
             true => rounded((constant.high - constant.low) / (2.0 * HALF_95)),
             false => 0.0,
         },
-        correlation: (0..k).filter_map(|j| law.correlation.get((k, j)).copied().map(thousandths)).collect(),
+        correlation: (0..k).filter_map(|j| correlation.get((k, j)).copied()).collect(),
         unit: constant.unit.clone(),
     };
     law.constants().enumerate().map(own).collect()
+}
+
+/// Correlations to thousandths. Nearly dependent constants may then have ones that nothing can
+/// have: these are made smaller until no combination has a negative variance.
+fn written(correlation: &DMatrix<f64>) -> DMatrix<f64> {
+    const LESS: f64 = 1e-3;
+    if correlation.is_empty() {
+        return correlation.clone();
+    }
+    let mut share = 1.0;
+    loop {
+        let rounded = DMatrix::from_fn(correlation.nrows(), correlation.ncols(), |i, j| {
+            if i == j { 1.0 } else { thousandths(share * correlation[(i, j)]) }
+        });
+        if share <= 0.0 || rounded.symmetric_eigenvalues().iter().all(|value| *value >= 0.0) {
+            return rounded;
+        }
+        share -= LESS;
+    }
 }
 
 /// From where to where its variable was recorded, in its unit.
@@ -115,4 +137,20 @@ fn rounded(value: f64) -> f64 {
 /// possible.
 fn thousandths(value: f64) -> f64 {
     (value * 1000.0).trunc() / 1000.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn correlations_that_are_written_can_be() {
+        let given = DMatrix::from_row_slice(3, 3, &[1.0, 0.0, 0.5, 0.0, 1.0, 0.867, 0.5, 0.867, 1.0]);
+        let least = |matrix: &DMatrix<f64>| matrix.clone().symmetric_eigenvalues().min();
+        assert!(least(&given) < 0.0);
+        let found = written(&given);
+        assert!(least(&found) >= 0.0 && (&found - &given).amax() < 0.05, "{found}");
+        let free = DMatrix::from_row_slice(2, 2, &[1.0, -0.9234, -0.9234, 1.0]);
+        assert_eq!(written(&free)[(0, 1)], -0.923);
+    }
 }

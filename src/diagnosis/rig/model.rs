@@ -19,6 +19,7 @@ use super::mechanics::slide::Course;
 use super::mechanics::structure::Structure;
 use super::own_effect::OwnEffect;
 use super::recording::datum::Datum;
+use super::recording::settings::Known;
 use crate::diagnosis::Diagnosed;
 use crate::inference::Candidate;
 use crate::rig::readings::Readings;
@@ -124,14 +125,15 @@ impl RigModel {
     }
 
     /// Stated noise of an offset, m; where only loads were read or only their noise is stated, that
-    /// of a load, with that of the displacement unless a mean was imposed.
+    /// of a load, with that of the displacement where that is known from its own reading.
     pub(super) fn stated_noise(&self) -> Option<f64> {
         let header = &self.readings.header;
         let of_load = self.per_newton().zip(header.load_noise).map(|(per_newton, noise)| per_newton * noise);
         if self.data.iter().any(|datum| datum.imposed.is_none()) {
             return header.noise.or(of_load);
         }
-        let is_as_read = self.data.iter().any(|d| d.imposed.is_some_and(|imposed| imposed.sd == 0.0));
+        let is_as_read =
+            self.data.iter().any(|d| d.imposed.is_some_and(|imposed| imposed.known == Known::Read));
         match (header.noise.filter(|_| is_as_read), of_load) {
             (Some(a), Some(b)) => Some(a.hypot(b)),
             (a, b) => a.or(b),

@@ -4,10 +4,14 @@
 pub mod chronicle;
 pub mod columns;
 pub mod datum;
+mod estimate;
 pub mod evidence;
 mod multiples;
 pub mod passing;
+mod recurring;
 pub mod resolution;
 mod rezeroed;
-mod settings;
+pub mod settings;
 pub mod spread;
+mod sweeps;
+mod turns;

@@ -23,6 +23,7 @@ use crate::diagnosis::rig::own_effect;
 use crate::diagnosis::rig::recording::datum;
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::diagnosis::rig::recording::evidence;
+use crate::diagnosis::rig::recording::settings::settings;
 use crate::error::Result;
 use crate::inference::{Candidate, Effect, Evidence, NotTestable, Parameter, UNKNOWN};
 use crate::rig::readings::Readings;
@@ -115,7 +116,8 @@ impl RigModel {
             _ => bent.clone(),
         });
         let large = bent.as_ref().map(|bent| model.large_deflections(bent)).transpose()?;
-        let mut evidence = evidence::of_data(&model.data, &readings.header, nuisance, large);
+        let errors = settings(&readings.rows, readings.header.driven).errors;
+        let mut evidence = evidence::of_data(&model.data, &readings.header, nuisance, large, &errors);
         evidence.stated_noise = model.stated_noise();
         if let Some(rod) = rod {
             let stations = |rod: &Rod, d: &Datum| {

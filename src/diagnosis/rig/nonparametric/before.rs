@@ -18,6 +18,7 @@ use super::along::Coordinate;
 use crate::diagnosis::rig::mechanics::load_history::{dwell, instants, runs};
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::diagnosis::rig::recording::passing::speeds;
+use crate::diagnosis::rig::recording::settings::Known;
 use crate::rig::readings::Direction;
 use crate::statistics::median;
 
@@ -68,9 +69,9 @@ impl Before {
 
     /// How fast the load was changed to what it is, N/s (m/s of an imposed displacement):
     /// v = (F − F′)/Δt, positive where it grew, Δt from the reading before until it hung, else
-    /// until it is read; at the first reading of a run the usual one; of a slide that is read on its
-    /// way, how fast it [passes](crate::diagnosis::rig::recording::passing). Nothing where it is always
-    /// the same at the same load, or but for its sign everywhere.
+    /// until it is read; at the first reading of a run the usual one; of a slide that is read on
+    /// its way, how fast it [passes](crate::diagnosis::rig::recording::passing). Nothing where it
+    /// is always the same at the same load, or but for its sign everywhere.
     pub fn speeds(&self, data: &[Datum]) -> Option<Vec<f64>> {
         let times: Vec<f64> = data.iter().map(|d| d.time).collect::<Option<_>>()?;
         let usual = dwell(data, &times);
@@ -115,8 +116,8 @@ impl Before {
     }
 }
 
-/// arsinh(v/v₀) of speeds, v₀ the slowest, or a share of the usual one: as many columns for a decade
-/// as for the next, and none for how still a slide is that stands still.
+/// arsinh(v/v₀) of speeds, v₀ the slowest, or a share of the usual one: as many columns for a
+/// decade as for the next, and none for how still a slide is that stands still.
 pub(super) fn by_decade(speeds: &[f64]) -> Coordinate {
     let sizes: Vec<f64> = speeds.iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
     let still = STILL * median(&sizes).unwrap_or_default();
@@ -133,7 +134,7 @@ fn passing(data: &[Datum], times: &[f64], instants: &[Vec<usize>]) -> Option<Vec
     };
     let own: Vec<_> = instants.iter().map(imposed).collect::<Option<_>>()?;
     let (u, times): (Vec<f64>, Vec<f64>) = own.iter().map(|(own, time)| (own.displacement, *time)).unzip();
-    speeds(&u, &times, own.iter().any(|(own, _)| own.sd > 0.0))
+    speeds(&u, &times, own.iter().any(|(own, _)| own.known == Known::Set))
 }
 
 /// Is a coordinate not always the same at the same load?

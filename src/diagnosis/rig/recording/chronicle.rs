@@ -60,8 +60,8 @@ pub struct Motion {
 
 impl Chronicle {
     pub fn of(rows: &[Reading], driven: Driven) -> Chronicle {
-        let set: Vec<Option<f64>> =
-            settings(rows, driven).into_iter().map(|own| own.map(|own| own.value)).collect();
+        let set = settings(rows, driven).rows;
+        let set: Vec<Option<f64>> = set.into_iter().map(|own| own.map(|own| own.value)).collect();
         let place = places(rows);
         let mut walk: Vec<usize> = (0..rows.len()).collect();
         walk.sort_by_key(|&i| (place.as_ref().map_or(0, |place| place[i]), i));

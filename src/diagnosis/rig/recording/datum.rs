@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::chronicle::{Chronicle, Motion};
 use super::rezeroed::{Shown, is_zeroed_by_direction};
-use super::settings::{Setting, settings};
+use super::settings::{Known, Setting, settings};
 use crate::diagnosis::rig::numbering::numbered;
 use crate::inference::RunName;
 use crate::rig::readings::{Axis, Direction, Driven, Phase, Reading, Readings};
@@ -78,8 +78,8 @@ pub struct Datum {
 pub struct Imposed {
     /// Along the positive axis, m: the setting that was read, see [`settings`](super::settings).
     pub displacement: f64,
-    /// Its standard deviation where that is a mean, m, which all its readings share; else 0.
-    pub sd: f64,
+    /// Where it is known from.
+    pub known: Known,
     /// What a newton of the measured load counts, m/N: one number for all loads of a recording, its
     /// largest displacement over its largest load.
     pub per_newton: f64,
@@ -100,7 +100,7 @@ impl Datum {
     /// True where what was set can be set again. Displacements that scatter are no setting: those
     /// that are read alike are off by the same, and their loads too.
     pub(in crate::diagnosis::rig) fn is_at_setting(&self) -> bool {
-        self.imposed.is_none_or(|imposed| imposed.sd > 0.0)
+        self.imposed.is_none_or(|imposed| imposed.known == Known::Set)
     }
 
     /// What a linear rod of this compliance (m/N) shows: the offset C·F, or the load u/C as
@@ -159,7 +159,7 @@ pub fn all(rows: &[Reading]) -> Vec<Datum> {
 pub fn recorded(readings: &Readings) -> Vec<Datum> {
     let mut data = of_rows(&readings.rows, readings.header.driven);
     if readings.header.driven == Driven::Displacement {
-        impose(&mut data, &settings(&readings.rows, readings.header.driven));
+        impose(&mut data, &settings(&readings.rows, readings.header.driven).rows);
     }
     data
 }
@@ -177,8 +177,8 @@ fn impose(data: &mut [Datum], settings: &[Option<Setting>]) {
     }
     let per_newton = displacement / load;
     for datum in data.iter_mut().filter(|datum| is_along(datum)) {
-        let set = settings[datum.row - 1].unwrap_or(Setting::as_read(datum.measured));
-        datum.imposed = Some(Imposed { displacement: set.value, sd: set.sd, per_newton });
+        let set = settings[datum.row - 1].unwrap_or(Setting { value: datum.measured, known: Known::Read });
+        datum.imposed = Some(Imposed { displacement: set.value, known: set.known, per_newton });
         datum.measured = per_newton * datum.signed_load();
         if datum.motion.is_none() {
             let away = if datum.is_unloading() { -1.0 } else { 1.0 };

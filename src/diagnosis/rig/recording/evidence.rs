@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::datum::{Datum, Imposed};
+use super::datum::Datum;
 use super::resolution::resolution;
 use super::spread;
 use crate::diagnosis::rig::numbering::numbered;
@@ -31,6 +31,7 @@ pub fn of_data(
     header: &RigHeader,
     nuisance: DMatrix<f64>,
     large: Option<DVector<f64>>,
+    errors: &DMatrix<f64>,
 ) -> Evidence {
     let spread = spread::spread(data, header);
     let (sensor, noise_range) = spread::sensors(data);
@@ -38,7 +39,7 @@ pub fn of_data(
     let (offsets, least_offset) = zeros(data);
     Evidence {
         nuisance,
-        background: background(data, large),
+        background: background(data, large, errors),
         offsets,
         least_offset,
         is_robust: true,
@@ -73,33 +74,31 @@ fn most_scatter(data: &[Datum]) -> Option<f64> {
 }
 
 /// What large deflections add (`large`), which the linear model leaves out, whether or not the
-/// readings show it; and what each mean that was imposed is off by, which moves all loads of it.
-fn background(data: &[Datum], large: Option<DVector<f64>>) -> DMatrix<f64> {
-    let mut columns: Vec<DVector<f64>> = large.into_iter().collect();
+/// readings show it; and what displacements that were imposed are off by (`errors` of each row,
+/// [`Settings::errors`](super::settings::Settings)), which moves their loads.
+fn background(data: &[Datum], large: Option<DVector<f64>>, errors: &DMatrix<f64>) -> DMatrix<f64> {
     // u² and u·c·F of each line
     let mut sums: BTreeMap<_, [f64; 2]> = BTreeMap::new();
-    let mut settings: BTreeMap<_, Vec<usize>> = BTreeMap::new();
-    for (i, d) in data.iter().enumerate() {
-        let Some(Imposed { displacement, sd, .. }) = d.imposed else { continue };
+    for (d, imposed) in data.iter().filter_map(|d| Some((d, d.imposed?))) {
         let sum = sums.entry(d.line_key()).or_default();
-        sum[0] += displacement * displacement;
-        sum[1] += displacement * d.measured;
-        if sd > 0.0 {
-            settings.entry((d.line_key(), displacement.to_bits())).or_default().push(i);
-        }
+        sum[0] += imposed.displacement.powi(2);
+        sum[1] += imposed.displacement * d.measured;
     }
-    for ((line, _), own) in settings {
-        let [square, product] = sums[&line];
-        let mut column = DVector::zeros(data.len());
-        for i in own {
-            column[i] = product / square * data[i].imposed.map_or(0.0, |imposed| imposed.sd);
-        }
-        columns.push(column);
+    // c/C
+    let per_metre = |d: &Datum| match sums.get(&d.line_key()) {
+        Some([square, product]) if d.imposed.is_some() && *square > 0.0 => product / square,
+        _ => 0.0,
+    };
+    let first = usize::from(large.is_some());
+    let mut columns = DMatrix::zeros(data.len(), first + errors.ncols());
+    if let Some(large) = large {
+        columns.set_column(0, &large);
     }
-    if columns.is_empty() {
-        return DMatrix::zeros(data.len(), 0);
+    for (i, d) in data.iter().enumerate() {
+        let own = errors.row(d.row - 1) * per_metre(d);
+        columns.view_mut((i, first), (1, errors.ncols())).copy_from(&own);
     }
-    DMatrix::from_columns(&columns)
+    columns
 }
 
 /// The session of each datum, where there are several.
@@ -210,7 +209,8 @@ mod tests {
 
     fn evidence(text: &str) -> Evidence {
         let data = datum::all(&Readings::from_text("f", text).unwrap().rows);
-        of_data(&data, &RigHeader::default(), DMatrix::zeros(data.len(), 0), None)
+        let none = DMatrix::zeros(data.len(), 0);
+        of_data(&data, &RigHeader::default(), none.clone(), None, &none)
     }
 
     fn trials(count: usize) -> String {

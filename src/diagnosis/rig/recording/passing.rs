@@ -5,28 +5,15 @@
 //! the next,
 //!
 //! ```text
-//! v₀ = Σ (tᵢ − t̄)·(uᵢ − ū)/Σ (tᵢ − t̄)²,   i = −3 … 3 without 0
+//! v₀ = Σ (tᵢ − t̄)·(uᵢ − ū)/Σ (tᵢ − t̄)²,   i = −2 … 2 without 0
 //! ```
 
-use std::ops::Range;
-
-use crate::statistics::median;
+use super::turns::Ways;
 
 /// Readings before and after the one whose speed it is.
-const HALF: usize = 3;
+const HALF: usize = 2;
 /// Readings of a sweep from which on it is one.
 const FEWEST: usize = 30;
-/// A slide that turns round goes back by more than as many standard deviations of the noise.
-const TURNED: f64 = 4.0;
-/// Steps differ from the next ones by √6 of the noise of a reading; and standard deviations per
-/// median of the size of a normal number.
-const OF_DIFFERENCES: f64 = 2.449_489_742_783_178;
-const PER_MEDIAN: f64 = 1.482_602_218_505_602;
-/// The first turn has a step before it.
-const FEW: usize = 2;
-/// Steps of a slide that passes, and turns smoothly, differ from the next ones by less than this share of the
-/// usual one.
-const EVEN: f64 = 0.5;
 
 /// Of displacements u that were read one after the other at these times, m/s; nothing where the
 /// slide stood still at each, as it does where there are few, or settings whose steps are uneven.
@@ -34,23 +21,10 @@ pub fn speeds(u: &[f64], times: &[f64], are_settings: bool) -> Option<Vec<f64>> 
     if u.len() < FEWEST {
         return None;
     }
-    let steps: Vec<f64> = u.windows(2).map(|own| own[1] - own[0]).collect();
-    let size = |values: &mut dyn Iterator<Item = f64>| median(&values.map(f64::abs).collect::<Vec<_>>());
-    let (step, differ) =
-        (size(&mut steps.iter().copied())?, size(&mut steps.windows(2).map(|own| own[1] - own[0]))?);
-    if are_settings && differ > EVEN * step {
+    let Ways { ways, is_even } = Ways::of(u)?;
+    if are_settings && !is_even {
         return None;
     }
-    let noise = differ * PER_MEDIAN / OF_DIFFERENCES;
-    let mut ways = ways(u, TURNED * noise);
-    let is_smooth = |turn: usize| (steps[turn] - steps[turn - 1]).abs() <= (EVEN * step).max(TURNED * differ);
-    ways.dedup_by(|next, way| {
-        let goes_on = way.end >= FEW && is_smooth(way.end - 1);
-        if goes_on {
-            way.end = next.end;
-        }
-        goes_on
-    });
     let mut speeds = vec![0.0; u.len()];
     for way in ways {
         for k in way.clone() {
@@ -70,38 +44,16 @@ fn slope(points: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
     if square > 0.0 { product / square } else { 0.0 }
 }
 
-/// From one turn to the next, each reading in one way; it turns where it goes back by more than
-/// `least`.
-fn ways(u: &[f64], least: f64) -> Vec<Range<usize>> {
-    let mut ways = Vec::new();
-    let (mut begins, mut farthest, mut direction) = (0, 0, 0.0f64);
-    for (k, value) in u.iter().enumerate() {
-        let since = value - u[begins];
-        let on = (value - u[farthest]) * if direction == 0.0 { since.signum() } else { direction };
-        if on > 0.0 {
-            farthest = k;
-            if direction == 0.0 && since.abs() > least {
-                direction = since.signum();
-            }
-        } else if direction != 0.0 && -on > least {
-            ways.push(begins..farthest + 1);
-            (begins, farthest, direction) = (farthest + 1, k, -direction);
-        }
-    }
-    ways.push(begins..u.len());
-    ways
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::statistics::Random;
+    use crate::statistics::{Random, median};
 
     /// To and fro by 400 in 250 s, read each second.
     fn sweep(noise: f64) -> Vec<f64> {
         let mut random = Random::seeded(5, 0);
-        let of = |k: u32| 400.0 * (1.0 - (f64::from(k) / 62.5 - 2.0).rem_euclid(4.0) - 1.0).abs();
-        (0..1000).map(|k| of(k) + noise * random.normal()).collect()
+        let there = |k: u32| 400.0 * (1.0 - (f64::from(k) / 62.5 - 2.0).rem_euclid(4.0) - 1.0).abs();
+        (0..1000).map(|k| there(k) + noise * random.normal()).collect()
     }
 
     #[test]

@@ -1,117 +1,215 @@
 //! What was set, row by row: the load that hung, or the displacement that was imposed.
 //!
-//! A displacement that is set again and again is read a little otherwise each time. Whatever
-//! follows it from reading to reading (a wave of the step between two settings, a curve with a kink
-//! at each) follows the scatter of these readings, and takes it off the loads. So readings of one
-//! setting count as that setting, their mean, unless the loads follow each of them, which was
-//! imposed then:
+//! A displacement is read with noise. Whatever follows its readings one by one (a wave of the step
+//! between two settings, a curve with a kink at each), or knows better than they where the slide
+//! was (a mean, a lag, a wave in time), takes their noise off the loads. So those of one setting
+//! count as that [setting](super::recurring), and those of a [sweep](super::sweeps) as the sweep,
+//! with the error of either as a column of every hypothesis, unless the loads follow each reading,
+//! which was imposed then:
 //!
 //! ```text
-//! f = r·k·e     e, f: the changes of displacement and load from one visit of a setting to the next
-//!               that came from the same other setting;  k: the stiffness;  r = 1 or 0
+//! f = r·k·e     e, f: what displacement and load are off from one visit of a setting to the next
+//!               that came from the same other setting, or off the sweep;  k: the stiffness;
+//!               r = 1 or 0
 //! ```
 
 use std::collections::BTreeMap;
 
-use super::multiples::step_of;
-use crate::rig::readings::{Axis, Driven, Reading};
+use nalgebra::DMatrix;
 
-/// Settings are as many times as far from each other as readings of one, and more.
-const APART: f64 = 5.0;
-/// How often one is read, on average.
-const READ: usize = 2;
-/// Readings of one lie within this share of the largest displacement.
-const WITHIN: f64 = 0.005;
-/// What share of the readings are of settings at least, where any are.
-const MOST: f64 = 0.9;
+use super::estimate::Estimate;
+use super::recurring::recurring;
+use super::sweeps::swept;
+use crate::rig::readings::{Axis, Driven, Reading};
+use crate::statistics::median;
+
 /// The r beyond which loads follow each reading, and how well it is known at least.
 const FOLLOWS: f64 = 0.5;
 const KNOWN: f64 = 0.25;
+
+/// Displacements scatter by as many times as much as loads, and more, where it matters that a sweep
+/// knows them better: where they do not, it hides what its own curve can draw.
+const DOMINATES: f64 = 2.0;
+
+/// Where what was set is known from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Known {
+    /// From its own reading.
+    Read,
+    /// It was set again and again: from all readings of that.
+    Set,
+    /// It was passed by a slide that moved on evenly: from the readings about it.
+    Passed,
+}
 
 /// What was set.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setting {
     /// Along the positive axis: a load, N, or a displacement, m.
     pub value: f64,
-    /// Standard deviation of a mean, which all its readings share; 0 of what was read once.
-    pub sd: f64,
+    /// Where that is known from.
+    pub known: Known,
 }
 
-impl Setting {
-    pub fn as_read(value: f64) -> Setting {
-        Setting { value, sd: 0.0 }
-    }
+/// Of all rows.
+pub struct Settings {
+    /// Of each row; of a displacement where it was read.
+    pub rows: Vec<Option<Setting>>,
+    /// What they are off by, rows × errors, m for one standard deviation of each error.
+    pub errors: DMatrix<f64>,
 }
 
-/// Of each row; of a displacement where it was read.
-pub fn settings(rows: &[Reading], driven: Driven) -> Vec<Option<Setting>> {
+/// What was set of each row.
+pub fn settings(rows: &[Reading], driven: Driven) -> Settings {
+    let read = |row: &Reading| match driven {
+        Driven::Load => Some(row.signed_load()),
+        Driven::Displacement => row.offset[row.direction.axis.index()],
+    };
+    let as_read = |value: f64| Setting { value, known: Known::Read };
+    let mut all = Settings {
+        rows: rows.iter().map(|row| read(row).map(as_read)).collect(),
+        errors: DMatrix::zeros(rows.len(), 0),
+    };
     if driven == Driven::Load {
-        return rows.iter().map(|row| Some(Setting::as_read(row.signed_load()))).collect();
+        return all;
     }
-    let read = |row: &Reading| row.offset[row.direction.axis.index()];
-    let mut settings: Vec<Option<Setting>> = rows.iter().map(|row| read(row).map(Setting::as_read)).collect();
     // of each axis and the place where its displacement is read
     let mut places: BTreeMap<(Axis, Option<u64>), Vec<usize>> = BTreeMap::new();
     for (i, row) in rows.iter().enumerate().filter(|(_, row)| read(row).is_some()) {
         places.entry((row.direction.axis, row.read_station.map(f64::to_bits))).or_default().push(i);
     }
     for own in places.into_values() {
-        let place = Place::of(rows, in_order(rows, &own));
-        if let Some(means) = recurring(&place.displacement).filter(|means| !place.follows(means)) {
-            place.rows.iter().zip(means).for_each(|(&i, mean)| settings[i] = Some(mean));
+        let place = Place::of(rows, &own);
+        if let Some((known, estimate)) = place.estimate() {
+            all.know(&place.rows, known, &estimate);
         }
     }
-    settings
+    all
 }
 
-/// Rows session by session and trial by trial, in the order of their times, or as they stand.
-fn in_order(rows: &[Reading], own: &[usize]) -> Vec<usize> {
-    let mut courses: BTreeMap<(Option<&str>, Option<&str>), Vec<usize>> = BTreeMap::new();
-    for &i in own {
-        courses.entry((rows[i].session.as_deref(), rows[i].trial.as_deref())).or_default().push(i);
-    }
-    let of_course = |mut course: Vec<usize>| {
-        if course.iter().all(|&i| rows[i].time.is_some()) {
-            let time = |i: usize| rows[i].time.unwrap_or_default();
-            course.sort_by(|&a, &b| time(a).total_cmp(&time(b)));
+impl Settings {
+    fn know(&mut self, rows: &[usize], known: Known, estimate: &Estimate) {
+        let first = self.errors.ncols();
+        let errors = std::mem::replace(&mut self.errors, DMatrix::zeros(0, 0));
+        self.errors = errors.resize_horizontally(first + estimate.errors.ncols(), 0.0);
+        for (k, (&i, &value)) in rows.iter().zip(&estimate.values).enumerate() {
+            self.rows[i] = Some(Setting { value, known });
+            self.errors.view_mut((i, first), (1, estimate.errors.ncols())).copy_from(&estimate.errors.row(k));
         }
-        course
-    };
-    courses.into_values().flat_map(of_course).collect()
+    }
 }
 
-/// Displacements along an axis that were read at one place, in their order, and their loads.
+/// Displacements along an axis that were read at one place, session by session and trial by trial,
+/// and their loads.
 struct Place {
     rows: Vec<usize>,
     displacement: Vec<f64>,
     load: Vec<f64>,
+    /// How many rows each trial of a session has.
+    courses: Vec<usize>,
+    /// Where times increase.
+    times: Option<Vec<f64>>,
 }
 
 impl Place {
-    fn of(readings: &[Reading], rows: Vec<usize>) -> Place {
+    fn of(readings: &[Reading], own: &[usize]) -> Place {
+        let mut courses: BTreeMap<(Option<&str>, Option<&str>), Vec<usize>> = BTreeMap::new();
+        for &i in own {
+            let key = (readings[i].session.as_deref(), readings[i].trial.as_deref());
+            courses.entry(key).or_default().push(i);
+        }
+        // in the order of their times, or as they stand
+        let mut courses: Vec<Vec<usize>> = courses.into_values().collect();
+        for course in &mut courses {
+            if course.iter().all(|&i| readings[i].time.is_some()) {
+                let time = |i: usize| readings[i].time.unwrap_or_default();
+                course.sort_by(|&a, &b| time(a).total_cmp(&time(b)));
+            }
+        }
+        let increase = |course: &Vec<usize>| {
+            course
+                .windows(2)
+                .all(|two| readings[two[0]].time.is_some_and(|a| Some(a) < readings[two[1]].time))
+        };
+        let rows = courses.concat();
         let axis = |i: usize| readings[i].direction.axis.index();
         Place {
             displacement: rows.iter().filter_map(|&i| readings[i].offset[axis(i)]).collect(),
             load: rows.iter().map(|&i| readings[i].signed_load()).collect(),
+            times: match courses.iter().all(increase) {
+                true => rows.iter().map(|&i| readings[i].time).collect(),
+                false => None,
+            },
+            courses: courses.iter().map(Vec::len).collect(),
             rows,
         }
     }
 
-    /// Do the loads follow each reading of a setting?
-    fn follows(&self, means: &[Setting]) -> bool {
+    /// Where the slide was that loads followed; nothing where that is as each reading says.
+    fn estimate(&self) -> Option<(Known, Estimate)> {
+        if let Some(set) = recurring(&self.displacement) {
+            let follows = self.share(&self.visits(&set.values)).is_some_and(|r| r > FOLLOWS);
+            return (!follows).then_some((Known::Set, set));
+        }
+        let (set, off) = self.sweeps()?;
+        let is_noise = self.share(&off).is_some_and(|r| r <= FOLLOWS);
+        (is_noise && self.ratio(&off)? > DOMINATES).then_some((Known::Passed, set))
+    }
+
+    /// e and f of the visits of settings.
+    fn visits(&self, set: &[f64]) -> Vec<(f64, f64)> {
         let mut last: BTreeMap<[Option<u64>; 2], usize> = BTreeMap::new();
         let (mut visits, mut before) = (Vec::new(), None);
-        for (k, mean) in means.iter().enumerate() {
-            let at = Some(mean.value.to_bits());
+        for (k, value) in set.iter().enumerate() {
+            let at = Some(value.to_bits());
             if let Some(other) = last.insert([before, at], k) {
                 let change = |values: &[f64]| values[k] - values[other];
                 visits.push((change(&self.displacement), change(&self.load)));
             }
             before = at;
         }
-        let all: Vec<(f64, f64)> = self.displacement.iter().copied().zip(self.load.iter().copied()).collect();
-        let (Some(own), Some(all)) = (Line::of(&visits), Line::of(&all)) else { return false };
-        own.sd <= KNOWN * all.slope.abs() && own.slope / all.slope > FOLLOWS
+        visits
+    }
+
+    /// The sweeps, where each course is one, with e and f.
+    fn sweeps(&self) -> Option<(Estimate, Vec<(f64, f64)>)> {
+        let mut all = Estimate { values: Vec::new(), errors: DMatrix::zeros(self.rows.len(), 0) };
+        let mut off = Vec::new();
+        for count in &self.courses {
+            let first = all.values.len();
+            let own = first..first + count;
+            let (u, load) = (&self.displacement[own.clone()], &self.load[own.clone()]);
+            let even: Vec<f64> = (0..*count).map(|k| k as f64).collect();
+            let sweep = swept(u, self.times.as_ref().map_or(&even[..], |times| &times[own.clone()]))?;
+            let loads = sweep.smooth(load);
+            off.extend((0..*count).map(|k| (u[k] - sweep.estimate.values[k], load[k] - loads[k])));
+            let known = all.errors.ncols();
+            all.errors = all.errors.resize_horizontally(known + sweep.estimate.errors.ncols(), 0.0);
+            all.errors
+                .view_mut((first, known), sweep.estimate.errors.shape())
+                .copy_from(&sweep.estimate.errors);
+            all.values.extend(sweep.estimate.values);
+        }
+        Some((all, off))
+    }
+
+    /// Noise of the displacement, as a load, over that of the load, of what both are off a sweep;
+    /// the medians, because loads may turn where the sweep does not.
+    fn ratio(&self, off: &[(f64, f64)]) -> Option<f64> {
+        let stiffness = Line::of(&self.line())?.slope.abs();
+        let usual = |own: &mut dyn Iterator<Item = f64>| median(&own.map(f64::abs).collect::<Vec<_>>());
+        let (e, f) = (usual(&mut off.iter().map(|own| own.0))?, usual(&mut off.iter().map(|own| own.1))?);
+        Some(stiffness * e / f)
+    }
+
+    fn line(&self) -> Vec<(f64, f64)> {
+        self.displacement.iter().copied().zip(self.load.iter().copied()).collect()
+    }
+
+    /// r of these e and f; nothing where it is not known.
+    fn share(&self, off: &[(f64, f64)]) -> Option<f64> {
+        let (own, all) = (Line::of(off)?, Line::of(&self.line())?);
+        (own.sd <= KNOWN * all.slope.abs()).then_some(own.slope / all.slope)
     }
 }
 
@@ -137,135 +235,21 @@ impl Line {
     }
 }
 
-/// The mean of those near to each, or itself where these are too far apart; nothing where no value
-/// recurs.
-fn recurring(values: &[f64]) -> Option<Vec<Setting>> {
-    let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    let step = step_of(values);
-    let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
-    let mut set: Vec<Setting> = values.iter().copied().map(Setting::as_read).collect();
-    let mut groups: Vec<Vec<usize>> = split(&order, values, step)?;
-    let mut means = Vec::new();
-    while let Some(own) = groups.pop() {
-        if let Some(parts) = split(&own, values, step) {
-            groups.extend(parts);
-        } else if values[own[own.len() - 1]] - values[own[0]] <= WITHIN * largest {
-            means.push(own);
-        }
-    }
-    if (means.iter().map(Vec::len).sum::<usize>() as f64) < MOST * values.len() as f64 {
-        return None;
-    }
-    let mean = |own: &[usize]| own.iter().map(|&i| values[i]).sum::<f64>() / own.len() as f64;
-    let (mut squares, mut free) = (0.0, 0.0);
-    for own in &means {
-        let value = mean(own);
-        squares += own.iter().map(|&i| (values[i] - value).powi(2)).sum::<f64>();
-        free += own.len() as f64 - 1.0;
-        own.iter().for_each(|&i| set[i].value = value);
-    }
-    let variance = if free > 0.0 { squares / free } else { 0.0 };
-    // what is always rounded the same way is not known better for being read again
-    let rounding = if variance < step * step { step * step / 12.0 } else { 0.0 };
-    for own in &means {
-        let sd = (variance / own.len() as f64 + rounding).sqrt();
-        own.iter().for_each(|&i| set[i].sd = sd);
-    }
-    Some(set)
-}
-
-/// Parts that are far from each other beside what each is wide, or a step of the display, and of
-/// several values each, on average; the fewest such, nothing where there are none. `order` is from
-/// the least value to the largest.
-fn split(order: &[usize], values: &[f64], step: f64) -> Option<Vec<Vec<usize>>> {
-    let count = order.len();
-    let at = |k: usize| values[order[k]];
-    let gap = |k: usize| at(k + 1) - at(k);
-    // parts grow over the least gaps: the other end of the one that begins, or ends, at a value
-    let mut gaps: Vec<usize> = (0..count.saturating_sub(1)).collect();
-    gaps.sort_by(|&a, &b| gap(a).total_cmp(&gap(b)));
-    let (mut first, mut last): (Vec<usize>, Vec<usize>) = ((0..count).collect(), (0..count).collect());
-    let (mut widest, mut least) = (step, None);
-    for (closed, &k) in gaps.iter().enumerate() {
-        // all gaps from this one on are open
-        if READ * (count - closed) <= count && gap(k) > 0.0 && gap(k) >= APART * widest {
-            least = Some(gap(k));
-        }
-        let (from, to) = (first[k], last[k + 1]);
-        (last[from], first[to]) = (to, from);
-        widest = widest.max(at(to) - at(from));
-    }
-    let least = least?;
-    let parts = order.chunk_by(|&a, &b| values[b] - values[a] < least);
-    Some(parts.map(<[usize]>::to_vec).collect())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::rig::readings::Readings;
-    use crate::statistics::Random;
     use crate::units::UM;
-
-    fn set(values: &[f64]) -> Vec<f64> {
-        let read: Vec<f64> = values.iter().map(|value| value * UM).collect();
-        let set = recurring(&read).map(|set| set.iter().map(|own| own.value).collect());
-        set.unwrap_or(read).iter().map(|u| u / UM).collect()
-    }
-
-    #[test]
-    fn readings_of_one_setting_are_that_setting() {
-        let mut random = Random::seeded(3, 0);
-        for noise in [0.05, 1.0] {
-            // there, back and beyond, several times, to 0.1 µm
-            let places: Vec<f64> =
-                (0..96).map(|k: i32| 250.0 * f64::from((k % 16 - 8).abs()) - 1000.0).collect();
-            let read: Vec<f64> =
-                places.iter().map(|u| ((u + noise * random.normal()) * 10.0).round() / 10.0).collect();
-            let set = set(&read);
-            let mut known: Vec<u64> = set.iter().map(|u| u.to_bits()).collect();
-            known.sort_unstable();
-            known.dedup();
-            assert_eq!(known.len(), 9);
-            assert!(set.iter().zip(&places).all(|(own, place)| (own - place).abs() < noise));
-        }
-    }
-
-    #[test]
-    fn what_does_not_recur_is_as_it_was_read() {
-        let mut random = Random::seeded(4, 0);
-        // a sweep, two of them far from each other, settings that are read once, and by chance
-        let sweep: Vec<f64> = (0..200).map(f64::from).collect();
-        let two: Vec<f64> = (0..200).map(|k| f64::from(k) + if k < 100 { 0.0 } else { 5000.0 }).collect();
-        let once: Vec<f64> = (1..20).map(|k| 100.0 * f64::from(k)).collect();
-        let by_chance: Vec<f64> = (0..200).map(|_| 500.0 * random.normal()).collect();
-        for values in [sweep, two, once, by_chance] {
-            let set = set(&values);
-            assert!(set.iter().zip(&values).all(|(own, value)| (own - value).abs() < 1e-9));
-        }
-    }
-
-    /// Steps of the display are no settings, but what lies closer together elsewhere is.
-    #[test]
-    fn settings_may_lie_unevenly() {
-        let read = [10.0, 11.0, 10.0, 20.0, 21.0, 20.0, 1000.0, 1001.0, 999.0, 5000.0, 5001.0, 5001.0];
-        let set = set(&read);
-        let expected = [31.0 / 3.0, 61.0 / 3.0, 1000.0, 15002.0 / 3.0];
-        for (k, own) in set.iter().enumerate() {
-            assert!((own - expected[k / 3]).abs() < 1e-6, "{set:?}");
-        }
-    }
 
     #[test]
     fn loads_are_as_they_hang_and_each_axis_has_settings_of_its_own() {
         let text = "axis,load_n,dy_um,dz_um\ny,1,10,\n-y,2,-20,\nz,3,,10.5\n";
         let rows = Readings::from_text("f", text).unwrap().rows;
-        let of = |driven, unit: f64| -> Vec<f64> {
-            let set = settings(&rows, driven).into_iter().flatten();
+        let set = |driven, unit: f64| -> Vec<f64> {
+            let set = settings(&rows, driven).rows.into_iter().flatten();
             set.map(|own| (own.value / unit * 10.0).round() / 10.0).collect()
         };
-        assert_eq!(of(Driven::Load, 1.0), [1.0, -2.0, 3.0]);
-        assert_eq!(of(Driven::Displacement, UM), [10.0, -20.0, 10.5]);
+        assert_eq!(set(Driven::Load, 1.0), [1.0, -2.0, 3.0]);
+        assert_eq!(set(Driven::Displacement, UM), [10.0, -20.0, 10.5]);
     }
 }

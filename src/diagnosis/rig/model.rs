@@ -19,7 +19,6 @@ use super::mechanics::slide::Course;
 use super::mechanics::structure::Structure;
 use super::own_effect::OwnEffect;
 use super::recording::datum::Datum;
-use super::recording::settings::Known;
 use crate::diagnosis::Diagnosed;
 use crate::inference::Candidate;
 use crate::rig::readings::Readings;
@@ -133,7 +132,7 @@ impl RigModel {
             return header.noise.or(of_load);
         }
         let is_as_read =
-            self.data.iter().any(|d| d.imposed.is_some_and(|imposed| imposed.known == Known::Read));
+            self.data.iter().any(|d| d.imposed.is_some_and(|imposed| imposed.known.has_noise_of_reading()));
         match (header.noise.filter(|_| is_as_read), of_load) {
             (Some(a), Some(b)) => Some(a.hypot(b)),
             (a, b) => a.or(b),

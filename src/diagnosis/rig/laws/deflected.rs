@@ -92,7 +92,7 @@ impl Deflected {
             // c₀/C; nothing is known of a line that was not displaced
             let ratio = if square > 0.0 { product / square } else { 0.0 };
             let compliance = if ratio == 0.0 { 0.0 } else { imposed.per_newton / ratio };
-            let u = imposed.displacement;
+            let u = imposed.set;
             let sense = if u == 0.0 { self.sense[i] } else { u.signum() };
             self.sense[i] = sense;
             self.read[i] = u;

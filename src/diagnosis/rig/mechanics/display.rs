@@ -54,7 +54,7 @@ impl Display {
                 last[sensor] = data[i].run;
             }
             if let Some(run) = sensors[sensor].last_mut() {
-                run.push((i, data[i].predicted));
+                run.push((i, data[i].predicted_as_set()));
             }
         }
         Display { follows, sensors }

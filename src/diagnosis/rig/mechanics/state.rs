@@ -316,7 +316,7 @@ impl<'a> State<'a> {
                 let (slider_play, presliding) = (self.slider_play.max(0.0), self.presliding.max(0.0));
                 let slide = Slide { play, slider_play, presliding, held, step };
                 let direction = datum.motion.map_or(0.0, |motion| motion.direction);
-                met = slide.next(met, datum.drive(), direction);
+                met = slide.next(met, datum.drive_as_read(), direction);
                 all.push((i, met));
             }
         }

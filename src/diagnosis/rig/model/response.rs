@@ -187,7 +187,7 @@ impl RigModel {
                     self.data.iter().zip(change.iter()).map(|(d, c)| d.measured - c).collect();
                 let slopes = self.slopes(*count, &felt, &left);
                 for (i, datum) in self.data.iter().enumerate() {
-                    change[i] += slopes[self.place[i]] * (felt[i] - datum.drive());
+                    change[i] += slopes[self.place[i]] * (felt[i] - datum.drive_as_read());
                 }
             }
         }

@@ -18,7 +18,6 @@ use super::along::Coordinate;
 use crate::diagnosis::rig::mechanics::load_history::{dwell, instants, runs};
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::diagnosis::rig::recording::passing::speeds;
-use crate::diagnosis::rig::recording::settings::Known;
 use crate::rig::readings::Direction;
 use crate::statistics::median;
 
@@ -133,8 +132,8 @@ fn passing(data: &[Datum], times: &[f64], instants: &[Vec<usize>]) -> Option<Vec
         Some((imposed, times[instant[0]]))
     };
     let own: Vec<_> = instants.iter().map(imposed).collect::<Option<_>>()?;
-    let (u, times): (Vec<f64>, Vec<f64>) = own.iter().map(|(own, time)| (own.displacement, *time)).unzip();
-    speeds(&u, &times, own.iter().any(|(own, _)| own.known == Known::Set))
+    let (u, times): (Vec<f64>, Vec<f64>) = own.iter().map(|(own, time)| (own.set, *time)).unzip();
+    speeds(&u, &times, own.iter().any(|(own, _)| own.known.recurs()))
 }
 
 /// Is a coordinate not always the same at the same load?

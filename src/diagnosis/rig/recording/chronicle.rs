@@ -61,7 +61,7 @@ pub struct Motion {
 impl Chronicle {
     pub fn of(rows: &[Reading], driven: Driven) -> Chronicle {
         let set = settings(rows, driven).rows;
-        let set: Vec<Option<f64>> = set.into_iter().map(|own| own.map(|own| own.value)).collect();
+        let set: Vec<Option<f64>> = set.into_iter().map(|own| own.map(|own| own.set)).collect();
         let place = places(rows);
         let mut walk: Vec<usize> = (0..rows.len()).collect();
         walk.sort_by_key(|&i| (place.as_ref().map_or(0, |place| place[i]), i));

@@ -78,6 +78,8 @@ pub struct Datum {
 pub struct Imposed {
     /// Along the positive axis, m: the setting that was read, see [`settings`](super::settings).
     pub displacement: f64,
+    /// The same for all readings of one setting: the displacement, but where its zero drifts.
+    pub set: f64,
     /// Where it is known from.
     pub known: Known,
     /// What a newton of the measured load counts, m/N: one number for all loads of a recording, its
@@ -94,13 +96,28 @@ impl Datum {
     /// What was set: the load along the positive axis (N), or the displacement that was imposed
     /// (m).
     pub fn drive(&self) -> f64 {
-        self.imposed.map_or(self.signed_load(), |imposed| imposed.displacement)
+        self.imposed.map_or(self.signed_load(), |imposed| imposed.set)
     }
 
     /// True where what was set can be set again. Displacements that scatter are no setting: those
     /// that are read alike are off by the same, and their loads too.
     pub(in crate::diagnosis::rig) fn is_at_setting(&self) -> bool {
-        self.imposed.is_none_or(|imposed| imposed.known == Known::Set)
+        self.imposed.is_none_or(|imposed| imposed.known.recurs())
+    }
+
+    /// The same as the load meets it: with the drift of its zero.
+    pub(in crate::diagnosis::rig) fn drive_as_read(&self) -> f64 {
+        self.imposed.map_or(self.signed_load(), |imposed| imposed.displacement)
+    }
+
+    /// What the base model predicts of what was set, m: without that drift.
+    pub(in crate::diagnosis::rig) fn predicted_as_set(&self) -> f64 {
+        match self.imposed {
+            Some(Imposed { displacement, set, .. }) if displacement != 0.0 => {
+                self.predicted * set / displacement
+            }
+            _ => self.predicted,
+        }
     }
 
     /// What a linear rod of this compliance (m/N) shows: the offset C·F, or the load u/C as
@@ -177,8 +194,8 @@ fn impose(data: &mut [Datum], settings: &[Option<Setting>]) {
     }
     let per_newton = displacement / load;
     for datum in data.iter_mut().filter(|datum| is_along(datum)) {
-        let set = settings[datum.row - 1].unwrap_or(Setting { value: datum.measured, known: Known::Read });
-        datum.imposed = Some(Imposed { displacement: set.value, known: set.known, per_newton });
+        let set = settings[datum.row - 1].unwrap_or(Setting::as_read(datum.measured));
+        datum.imposed = Some(Imposed { displacement: set.value, set: set.set, known: set.known, per_newton });
         datum.measured = per_newton * datum.signed_load();
         if datum.motion.is_none() {
             let away = if datum.is_unloading() { -1.0 } else { 1.0 };

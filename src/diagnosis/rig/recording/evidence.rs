@@ -125,7 +125,7 @@ fn zeros(data: &[Datum]) -> (DMatrix<f64>, Vec<f64>) {
 /// readings without a rod.
 pub fn slopes(data: &[Datum], line: &[usize]) -> DMatrix<f64> {
     let count = line.iter().max().map_or(0, |last| last + 1);
-    DMatrix::from_fn(data.len(), count, |i, j| if line[i] == j { data[i].drive() } else { 0.0 })
+    DMatrix::from_fn(data.len(), count, |i, j| if line[i] == j { data[i].drive_as_read() } else { 0.0 })
 }
 
 /// Three to five folds of whole trials. Of one or two trials whole cycles are held out where the

@@ -4,8 +4,9 @@
 //! between two settings, a curve with a kink at each), or knows better than they where the slide
 //! was (a mean, a lag, a wave in time), takes their noise off the loads. So those of one setting
 //! count as that [setting](super::recurring), and those of a [sweep](super::sweeps) as the sweep,
-//! with the error of either as a column of every hypothesis, unless the loads follow each reading,
-//! which was imposed then:
+//! with the error of either as a column of every hypothesis. Where the zero of the display drifts,
+//! readings are what they are to the rod, and settings to what follows their steps; where the loads
+//! follow each reading, that was imposed:
 //!
 //! ```text
 //! f = r·k·e     e, f: what displacement and load are off from one visit of a setting to the next
@@ -27,6 +28,8 @@ use crate::statistics::median;
 const FOLLOWS: f64 = 0.5;
 const KNOWN: f64 = 0.25;
 
+/// Standard deviations beyond which readings of settings are no noise.
+const SURE: f64 = 4.0;
 /// Displacements scatter by as many times as much as loads, and more, where it matters that a sweep
 /// knows them better: where they do not, it hides what its own curve can draw.
 const DOMINATES: f64 = 2.0;
@@ -38,8 +41,23 @@ pub enum Known {
     Read,
     /// It was set again and again: from all readings of that.
     Set,
+    /// It was set again and again, but its readings have something in common with those before
+    /// them: a zero that drifts.
+    Drifting,
     /// It was passed by a slide that moved on evenly: from the readings about it.
     Passed,
+}
+
+impl Known {
+    /// True where it was set again and again.
+    pub fn recurs(self) -> bool {
+        matches!(self, Known::Set | Known::Drifting)
+    }
+
+    /// True where it has the noise of one reading.
+    pub fn has_noise_of_reading(self) -> bool {
+        matches!(self, Known::Read | Known::Drifting)
+    }
 }
 
 /// What was set.
@@ -47,8 +65,16 @@ pub enum Known {
 pub struct Setting {
     /// Along the positive axis: a load, N, or a displacement, m.
     pub value: f64,
-    /// Where that is known from.
+    /// The same for all readings of one setting: the value, but where that drifts.
+    pub set: f64,
+    /// Where the value is known from.
     pub known: Known,
+}
+
+impl Setting {
+    pub fn as_read(value: f64) -> Setting {
+        Setting { value, set: value, known: Known::Read }
+    }
 }
 
 /// Of all rows.
@@ -65,9 +91,8 @@ pub fn settings(rows: &[Reading], driven: Driven) -> Settings {
         Driven::Load => Some(row.signed_load()),
         Driven::Displacement => row.offset[row.direction.axis.index()],
     };
-    let as_read = |value: f64| Setting { value, known: Known::Read };
     let mut all = Settings {
-        rows: rows.iter().map(|row| read(row).map(as_read)).collect(),
+        rows: rows.iter().map(|row| read(row).map(Setting::as_read)).collect(),
         errors: DMatrix::zeros(rows.len(), 0),
     };
     if driven == Driven::Load {
@@ -93,7 +118,9 @@ impl Settings {
         let errors = std::mem::replace(&mut self.errors, DMatrix::zeros(0, 0));
         self.errors = errors.resize_horizontally(first + estimate.errors.ncols(), 0.0);
         for (k, (&i, &value)) in rows.iter().zip(&estimate.values).enumerate() {
-            self.rows[i] = Some(Setting { value, known });
+            let read = self.rows[i].map_or(value, |own| own.value);
+            let is_drifting = known == Known::Drifting;
+            self.rows[i] = Some(Setting { value: if is_drifting { read } else { value }, set: value, known });
             self.errors.view_mut((i, first), (1, estimate.errors.ncols())).copy_from(&estimate.errors.row(k));
         }
     }
@@ -149,7 +176,12 @@ impl Place {
     fn estimate(&self) -> Option<(Known, Estimate)> {
         if let Some(set) = recurring(&self.displacement) {
             let follows = self.share(&self.visits(&set.values)).is_some_and(|r| r > FOLLOWS);
-            return (!follows).then_some((Known::Set, set));
+            let off: Vec<f64> = self.displacement.iter().zip(&set.values).map(|(u, set)| u - set).collect();
+            let known = match is_noise(&off) {
+                true => (Known::Set, set),
+                false => (Known::Drifting, Estimate { errors: DMatrix::zeros(off.len(), 0), ..set }),
+            };
+            return (!follows).then_some(known);
         }
         let (set, off) = self.sweeps()?;
         let is_noise = self.share(&off).is_some_and(|r| r <= FOLLOWS);
@@ -213,6 +245,18 @@ impl Place {
     }
 }
 
+/// Have the values nothing in common with those before them? A zero that drifts has
+/// (J. von Neumann, *Ann. Math. Stat.* 12 (1941) 367–395):
+///
+/// ```text
+/// Σ (eₖ₊₁ − eₖ)²/Σ eₖ² = 2 ± 2/√n
+/// ```
+fn is_noise(values: &[f64]) -> bool {
+    let square: f64 = values.iter().map(|e| e * e).sum();
+    let changes: f64 = values.windows(2).map(|own| (own[1] - own[0]).powi(2)).sum();
+    changes >= (2.0 - SURE * 2.0 / (values.len() as f64).sqrt()) * square
+}
+
 /// A straight line through points, and the standard deviation of its slope.
 struct Line {
     slope: f64,
@@ -240,6 +284,16 @@ mod tests {
     use super::*;
     use crate::rig::readings::Readings;
     use crate::units::UM;
+
+    #[test]
+    fn what_drifts_is_no_noise() {
+        let mut random = crate::statistics::Random::seeded(2, 0);
+        let noise: Vec<f64> = (0..128).map(|_| random.normal()).collect();
+        assert!(is_noise(&noise));
+        let drifting: Vec<f64> =
+            noise.iter().enumerate().map(|(k, e)| e + 0.05 * (k as f64 - 63.5)).collect();
+        assert!(!is_noise(&drifting));
+    }
 
     #[test]
     fn loads_are_as_they_hang_and_each_axis_has_settings_of_its_own() {

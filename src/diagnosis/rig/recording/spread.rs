@@ -20,7 +20,6 @@ use std::hash::Hash;
 
 use super::datum::{Datum, Imposed};
 use super::resolution::resolution;
-use super::settings::Known;
 use crate::diagnosis::rig::numbering::numbered;
 use crate::rig::readings::{Axis, RigHeader};
 
@@ -128,7 +127,7 @@ fn stated(data: &[Datum], header: &RigHeader) -> Option<Vec<f64>> {
     let of_datum = |datum: &Datum| {
         let of_displacement = stiffer[datum.direction.axis.index()] * noise;
         let of_load = |imposed: Imposed| {
-            let of_displacement = if imposed.known == Known::Read { of_displacement } else { 0.0 };
+            let of_displacement = if imposed.known.has_noise_of_reading() { of_displacement } else { 0.0 };
             (imposed.per_newton * load_noise).hypot(of_displacement) / noise
         };
         datum.imposed.map_or(1.0, of_load)

@@ -13,6 +13,11 @@ const NOISE: (f64, f64) = (0.5, 0.01);
 /// Cycles along y: what the cell shows of loads (N) that bend the rod as far, which way it moved
 /// and when.
 fn cycles(seed: u64, shown: impl Fn(&[f64], usize) -> f64) -> RigDiagnosis {
+    drifting_cycles(seed, 0.0, shown)
+}
+
+/// The same while the zero of the displacement goes on by as many µm, with 600 s.
+fn drifting_cycles(seed: u64, drift: f64, shown: impl Fn(&[f64], usize) -> f64) -> RigDiagnosis {
     let (stiffness, mut random) = (1.0 / compliance(&rod(""))[(1, 1)], Random::seeded(seed, 0));
     let places = (0..4 * STEPS * CYCLES).map(|k| {
         let quarter = (k % STEPS) as f64;
@@ -25,6 +30,7 @@ fn cycles(seed: u64, shown: impl Fn(&[f64], usize) -> f64) -> RigDiagnosis {
     for (k, place) in places.iter().enumerate().skip(1) {
         let load = shown(&loads, k) + NOISE.1 * random.normal();
         let (sign, read) = (if load < 0.0 { "-" } else { "" }, place + NOISE.0 * random.normal());
+        let read = read + drift * (1.0 - (-20.0 * k as f64 / 600.0).exp());
         text += &format!("{sign}y,{:.3},{},{read:.1}\n", load.abs(), 20 * k);
     }
     diagnose(&readings(&text), Some(&rod(""))).unwrap()
@@ -84,6 +90,16 @@ fn a_load_that_drifts_has_newtons() {
     let [drift] = &found.diagnosis.findings[..] else { panic!("{:?}", names(&found)) };
     let words = found.model.describe(drift).observed;
     assert!(words.starts_with("The load cell drifts by 0.2") && words.contains("N per hour"), "{words}");
+}
+
+/// What readings of a setting are off its mean is noise only where it has nothing in common with
+/// what came before.
+#[test]
+fn a_zero_of_the_display_that_drifts_is_a_drift() {
+    let found = drifting_cycles(10, 5.0, as_they_are);
+    let [drift] = &found.diagnosis.findings[..] else { panic!("{:?}", names(&found)) };
+    let words = found.model.describe(drift).observed;
+    assert!(words.contains("or the zero of dy the other way"), "{words}");
 }
 
 /// A rod that relaxes lacks a part of each change until six readings later: one law of two numbers,

@@ -97,7 +97,7 @@ pub fn hysteresis(data: &[Datum], shape: Loop) -> Option<Memory> {
     let mut left: HashMap<Direction, f64> = HashMap::new();
     let remembers = matches!(shape, Loop::NewByRayleigh | Loop::NewByPlays);
     for run in runs(data) {
-        let size = |d: &Datum| d.imposed.map_or(d.load, |u| u.displacement.abs() / u.per_newton);
+        let size = |d: &Datum| d.imposed.map_or(d.load, |u| u.set.abs() / u.per_newton);
         let largest = run.iter().fold(0.0, |max: f64, &i| max.max(size(&data[i])));
         let direction = data[run[0]].direction;
         let before = known.entry(direction).or_insert(f64::NEG_INFINITY);
@@ -150,8 +150,7 @@ fn turning(data: &[Datum]) -> Option<Memory> {
     let mut memory = none(data);
     let mut is_any = false;
     for run in runs(data) {
-        let load =
-            |i: usize| data[i].imposed.map_or(data[i].signed_load(), |u| u.displacement / u.per_newton);
+        let load = |i: usize| data[i].imposed.map_or(data[i].signed_load(), |u| u.set / u.per_newton);
         let (least, most) = run.iter().fold((0.0f64, 0.0f64), |(a, b), &i| (a.min(load(i)), b.max(load(i))));
         if least >= 0.0 || most <= 0.0 {
             continue;

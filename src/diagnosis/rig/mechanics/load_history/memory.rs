@@ -41,8 +41,7 @@ pub struct Moment {
 pub fn moments(data: &[Datum], run: &[usize], times: &[f64]) -> Vec<Moment> {
     let of_instant = |instant: Vec<usize>| {
         // of an imposed displacement the one that is largest counts, as the load that it would need
-        let load =
-            |i: &usize| data[*i].imposed.map_or(data[*i].signed_load(), |u| u.displacement / u.per_newton);
+        let load = |i: &usize| data[*i].imposed.map_or(data[*i].signed_load(), |u| u.set / u.per_newton);
         let is_imposed = |i: &&usize| data[**i].imposed.is_some();
         let imposed = instant.iter().filter(is_imposed).map(load).max_by(|a, b| a.abs().total_cmp(&b.abs()));
         let (first, time) = (instant[0], times[instant[0]]);

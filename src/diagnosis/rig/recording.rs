@@ -8,6 +8,7 @@ mod estimate;
 pub mod evidence;
 mod multiples;
 pub mod passing;
+mod place;
 mod recurring;
 pub mod resolution;
 mod rezeroed;

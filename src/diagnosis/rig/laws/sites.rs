@@ -43,22 +43,13 @@ const OF_TIME: &[Form] = &[
     Form::Approach,
     Form::Decay,
     Form::Logarithm,
+    Form::Polynomial(1),
+    Form::Polynomial(2),
+    Form::Polynomial(3),
     Form::Oscillation,
-    Form::Polynomial(1),
-    Form::Polynomial(2),
-    Form::Polynomial(3),
 ];
-/// Where a displacement goes to and fro as often as this, and more.
-const OF_TIME_OF_CYCLES: &[Form] = &[
-    Form::Threshold,
-    Form::Step,
-    Form::Approach,
-    Form::Decay,
-    Form::Logarithm,
-    Form::Polynomial(1),
-    Form::Polynomial(2),
-    Form::Polynomial(3),
-];
+/// Where a displacement goes to and fro as often as this, and more: all but the last.
+const OF_TIME_OF_CYCLES: &[Form] = OF_TIME.split_at(OF_TIME.len() - 1).0;
 const CYCLES: usize = 2;
 /// From anywhere on: temperature.
 const OF_A_LEVEL: &[Form] = OF_A_SIDE;

@@ -25,7 +25,7 @@ use crate::statistics::median;
 const SAME_WAIT: f64 = 1.1;
 /// And speeds: what is fast and slow alike follows the sign of the motion alone.
 const SAME_SPEED: f64 = 1.25;
-/// What is slower than this share of the usual speed stands still.
+/// What is slower than this share of the usual speed does not move.
 const STILL: f64 = 0.1;
 
 /// The change of the load before each datum.
@@ -116,7 +116,7 @@ impl Before {
 }
 
 /// arsinh(v/v₀) of speeds, v₀ the slowest, or a share of the usual one: as many columns for a
-/// decade as for the next, and none for how still a slide is that stands still.
+/// decade as for the next, and none for how slow a slide is that does not move.
 pub(super) fn by_decade(speeds: &[f64]) -> Coordinate {
     let sizes: Vec<f64> = speeds.iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
     let still = STILL * median(&sizes).unwrap_or_default();

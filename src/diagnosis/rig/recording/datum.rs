@@ -8,8 +8,9 @@
 use std::collections::{HashMap, HashSet};
 
 use super::chronicle::{Chronicle, Motion};
+use super::place::Known;
 use super::rezeroed::{Shown, is_zeroed_by_direction};
-use super::settings::{Known, Setting, settings};
+use super::settings::{Setting, settings};
 use crate::diagnosis::rig::numbering::numbered;
 use crate::inference::RunName;
 use crate::rig::readings::{Axis, Direction, Driven, Phase, Reading, Readings};
@@ -78,7 +79,7 @@ pub struct Datum {
 pub struct Imposed {
     /// Along the positive axis, m: the setting that was read, see [`settings`](super::settings).
     pub displacement: f64,
-    /// The same for all readings of one setting: the displacement, but where its zero drifts.
+    /// The same for all readings of one setting, their mean.
     pub set: f64,
     /// Where it is known from.
     pub known: Known,

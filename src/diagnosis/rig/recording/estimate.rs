@@ -2,6 +2,16 @@
 
 use nalgebra::DMatrix;
 
+/// Errors that a hypothesis holds besides its own numbers, at most, and numbers of all their
+/// columns.
+const MOST: usize = 160;
+const NUMBERS: usize = 2_000_000;
+
+/// How many errors these readings may have at most: each is a column of every hypothesis.
+pub fn most_errors(readings: usize) -> usize {
+    MOST.min(NUMBERS / readings.max(1))
+}
+
 /// Displacements that were read one after the other, m, without the noise of each.
 pub struct Estimate {
     /// Of each reading.

@@ -5,7 +5,7 @@
 
 use nalgebra::DMatrix;
 
-use super::estimate::Estimate;
+use super::estimate::{Estimate, most_errors};
 use super::multiples::step_of;
 
 /// Settings are as many times as far from each other as readings of one, and more.
@@ -18,7 +18,7 @@ const WITHIN: f64 = 0.02;
 const MOST: f64 = 0.9;
 
 /// The mean of those near to each, or itself where these are too far apart; nothing where few
-/// values recur.
+/// values recur. Without errors where there are too many settings.
 pub fn recurring(values: &[f64]) -> Option<Estimate> {
     let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let step = step_of(values);
@@ -36,7 +36,8 @@ pub fn recurring(values: &[f64]) -> Option<Estimate> {
     if (means.iter().map(Vec::len).sum::<usize>() as f64) < MOST * values.len() as f64 {
         return None;
     }
-    let mut all = Estimate { values: values.to_vec(), errors: DMatrix::zeros(values.len(), means.len()) };
+    let errors = if means.len() <= most_errors(values.len()) { means.len() } else { 0 };
+    let mut all = Estimate { values: values.to_vec(), errors: DMatrix::zeros(values.len(), errors) };
     let (mut squares, mut free) = (0.0, 0.0);
     for own in &means {
         let mean = own.iter().map(|&i| values[i]).sum::<f64>() / own.len() as f64;
@@ -47,7 +48,7 @@ pub fn recurring(values: &[f64]) -> Option<Estimate> {
     let variance = if free > 0.0 { squares / free } else { 0.0 };
     // what is always rounded the same way is not known better for being read again
     let rounding = if variance < step * step { step * step / 12.0 } else { 0.0 };
-    for (k, own) in means.iter().enumerate() {
+    for (k, own) in means.iter().enumerate().take(errors) {
         let sd = (variance / own.len() as f64 + rounding).sqrt();
         own.iter().for_each(|&i| all.errors[(i, k)] = sd);
     }
@@ -133,5 +134,14 @@ mod tests {
         for (k, own) in set.iter().enumerate() {
             assert!((own - expected[k / 3]).abs() < 1e-6, "{set:?}");
         }
+    }
+
+    #[test]
+    fn too_many_settings_have_no_errors() {
+        let errors = |settings: usize| {
+            let read: Vec<f64> = (0..4 * settings).map(|k| (k % settings) as f64 * 10.5 * UM).collect();
+            recurring(&read).unwrap().errors.ncols()
+        };
+        assert_eq!((errors(100), errors(1000)), (100, 0));
     }
 }

@@ -10,9 +10,11 @@
 //! Its knots lie as far apart as what it leaves of the readings allows, and by half of that, so
 //! that it leaves out nothing that the readings are too few to show.
 
+use std::ops::Range;
+
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::estimate::Estimate;
+use super::estimate::{Estimate, most_errors};
 use super::turns::Ways;
 
 /// Readings of a sweep from which on it is one, and of each of its ways.
@@ -20,8 +22,6 @@ const FEWEST: usize = 30;
 const OF_WAY: usize = 8;
 /// Readings from knot to knot.
 const SPACINGS: [usize; 5] = [96, 48, 24, 12, 6];
-/// Coefficients of all splines, at most.
-const MOST: usize = 160;
 /// Readings scatter by less than this share of the largest displacement.
 const WITHIN: f64 = 0.01;
 /// More knots are better where they take more than as many standard deviations off χ².
@@ -48,14 +48,13 @@ pub fn swept(u: &[f64], at: &[f64]) -> Option<Sweep> {
     if u.len() < FEWEST || ways.iter().any(|way| way.len() < OF_WAY) {
         return None;
     }
+    let coefficients = |spacing| ways.iter().map(|way| coefficients(way.len(), spacing)).sum::<usize>();
     let with = |spacing: usize| -> Option<Fit> {
-        let own = |way: &std::ops::Range<usize>| Spline::new(&at[way.clone()], spacing);
+        let own = |way: &Range<usize>| Spline::new(&at[way.clone()], spacing);
         Some(Fit::of(ways.iter().map(own).collect::<Option<_>>()?, u))
     };
-    let mut fits = Vec::new();
-    for spacing in SPACINGS {
-        fits.extend(with(spacing).filter(|fit| fit.coefficients <= MOST.min(u.len() / 2)));
-    }
+    let few = |spacing: &usize| coefficients(*spacing) <= most_errors(u.len()).min(u.len() / 2);
+    let fits: Vec<Fit> = SPACINGS.into_iter().filter(few).filter_map(with).collect();
     // the coarsest that no finer one is better than, and the next finer one of it
     let coarsest = (0..fits.len()).find(|&k| fits[k + 1..].iter().all(|finer| !finer.is_better(&fits[k])))?;
     let fit = fits.into_iter().nth(coarsest + 1)?;
@@ -132,10 +131,10 @@ impl Spline {
     /// Of readings at these places, about as many from knot to knot; nothing where they do not
     /// determine it.
     fn new(at: &[f64], spacing: usize) -> Option<Spline> {
-        let pieces = (at.len() as f64 / spacing as f64).round().max(1.0);
+        let columns = coefficients(at.len(), spacing);
+        let pieces = (columns + 1 - ORDER) as f64;
         let (first, last) = (*at.first()?, *at.last()?);
         let width = (last - first) / pieces;
-        let columns = pieces as usize + ORDER - 1;
         let mut basis = DMatrix::zeros(at.len(), columns);
         for (row, at) in at.iter().enumerate() {
             let place = (at - first) / width;
@@ -147,6 +146,11 @@ impl Spline {
         let normal = Cholesky::new(basis.tr_mul(&basis))?;
         Some(Spline { basis, normal })
     }
+}
+
+/// How many coefficients a way of so many readings has.
+fn coefficients(readings: usize, spacing: usize) -> usize {
+    (readings as f64 / spacing as f64).round().max(1.0) as usize + ORDER - 1
 }
 
 /// The four uniform cubic B-splines that are not zero at x from a knot on, 0 ≤ x ≤ 1.

@@ -19,15 +19,11 @@ use crate::diagnosis::rig::mechanics::load_history::{dwell, instants, runs};
 use crate::diagnosis::rig::recording::datum::Datum;
 use crate::diagnosis::rig::recording::passing::speeds;
 use crate::rig::readings::Direction;
-use crate::statistics::median;
 
 /// Waiting times that differ by less than this factor are the same.
 const SAME_WAIT: f64 = 1.1;
 /// And speeds: what is fast and slow alike follows the sign of the motion alone.
 const SAME_SPEED: f64 = 1.25;
-/// What is slower than this share of the usual speed does not move.
-const STILL: f64 = 0.1;
-
 /// The change of the load before each datum.
 pub(in crate::diagnosis::rig) struct Before {
     /// F′ of each datum, as [`Datum::drive`] counts it; 0 at the first of a run.
@@ -115,12 +111,10 @@ impl Before {
     }
 }
 
-/// arsinh(v/v₀) of speeds, v₀ the slowest, or a share of the usual one: as many columns for a
-/// decade as for the next, and none for how slow a slide is that does not move.
+/// arsinh(v/v₀) of speeds, v₀ the slowest: as many columns for a decade as for the next.
 pub(super) fn by_decade(speeds: &[f64]) -> Coordinate {
-    let sizes: Vec<f64> = speeds.iter().map(|v| v.abs()).filter(|v| *v > 0.0).collect();
-    let still = STILL * median(&sizes).unwrap_or_default();
-    let slowest = sizes.into_iter().fold(f64::INFINITY, f64::min).max(still);
+    let sizes = speeds.iter().map(|v| v.abs()).filter(|v| *v > 0.0);
+    let slowest = sizes.fold(f64::INFINITY, f64::min);
     speeds.iter().map(|v| Some((v / slowest).asinh())).collect()
 }
 

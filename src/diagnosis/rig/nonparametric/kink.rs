@@ -67,9 +67,6 @@ impl Way {
     }
 }
 
-/// Slopes change within this share of the largest displacement, where displacements scatter.
-const NEAR_END: f64 = 0.95;
-
 /// Other slopes of some of the data; together they have the prior of one curve.
 fn kinks(data: &[Datum], deflections: &[f64], place: &str, group: &[usize]) -> Vec<Entry> {
     let loaded = |way: Way| group.iter().copied().filter(move |&i| way.includes(data[i].drive()));
@@ -79,12 +76,7 @@ fn kinks(data: &[Datum], deflections: &[f64], place: &str, group: &[usize]) -> V
     for way in ways {
         // the slope of all loads is the stiffness; two of three slopes are as good as all
         let first = if way == Way::Against { vec![0.0] } else { Vec::new() };
-        let mut knots = knots(loaded(way).map(|i| data[i].drive().abs()).collect());
-        if group.iter().any(|&i| !data[i].is_at_setting()) {
-            // the farthest of readings that scatter are those that scatter outwards
-            let farthest = knots.iter().copied().fold(0.0, f64::max);
-            knots.retain(|knot| *knot < NEAR_END * farthest);
-        }
+        let knots = knots(loaded(way).map(|i| data[i].drive().abs()).collect());
         for knot in first.into_iter().chain(knots) {
             let beyond = loaded(way).filter(|&i| data[i].drive().abs() > knot);
             let weight = |i: usize| (i, deflections[i] * (1.0 - knot / data[i].drive().abs()));

@@ -258,4 +258,17 @@ mod tests {
         assert_eq!((phase[0], phase[2]), (-1.0, 1.0));
         assert!(phase[1].is_nan());
     }
+
+    #[test]
+    fn displacements_that_are_read_alike_by_chance_are_no_repeats() {
+        const ROWS: &str = "axis,load_n,dy_um\ny,1,10.1\ny,2,20.3\ny,1,10.1\n";
+        // no setting recurs here
+        let text = format!("# driven = displacement\n{ROWS}");
+        let data = datum::recorded(&Readings::from_text("f", &text).unwrap());
+        let none = DMatrix::zeros(data.len(), 0);
+        let read = of_data(&data, &RigHeader::default(), none.clone(), None, &none);
+        assert_eq!(read.replicate_group, [0, 1, 2]);
+        let hung = evidence(ROWS);
+        assert_eq!(hung.replicate_group, [0, 1, 0]);
+    }
 }

@@ -159,3 +159,12 @@ fn a_damper_follows_the_speed() {
     let [slope] = &law.amplitudes[..] else { panic!("{:?}", law.amplitudes) };
     assert!(slope.low < -0.2 && -0.2 < slope.high && slope.high - slope.low < 0.02, "{slope:?}");
 }
+
+/// A wave in time that goes on as the slide does is the slide.
+#[test]
+fn what_swings_as_the_slide_does_is_no_law_of_time() {
+    let found = sweep(1, 0.5, false, |load, change| load + 0.2 * change);
+    assert!(found.diagnosis.is_mismatch());
+    let law = found.law.as_ref().and_then(|proposed| proposed.law.as_ref().ok());
+    assert!(law.is_none_or(|law| !law.site.variable.name.contains("time")), "{law:?}");
+}

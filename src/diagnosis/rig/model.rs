@@ -19,6 +19,7 @@ use super::mechanics::slide::Course;
 use super::mechanics::structure::Structure;
 use super::own_effect::OwnEffect;
 use super::recording::datum::Datum;
+use super::recording::place::Known;
 use crate::diagnosis::Diagnosed;
 use crate::inference::Candidate;
 use crate::rig::readings::Readings;
@@ -121,6 +122,19 @@ impl RigModel {
     /// What a newton of a measured load counts, m/N; `None` where loads were set.
     pub fn per_newton(&self) -> Option<f64> {
         self.data.iter().find_map(|datum| datum.imposed).map(|imposed| imposed.per_newton)
+    }
+
+    /// What imposed displacements count as, in words, where that is not what was read of each.
+    pub fn displacements_count_as(&self) -> Option<&'static str> {
+        let are = |known: Known| self.data.iter().any(|d| d.imposed.is_some_and(|own| own.known == known));
+        match (are(Known::Set), are(Known::Passed)) {
+            (true, true) => {
+                Some("the mean of all readings of each setting, and a smooth curve through each sweep")
+            }
+            (true, false) => Some("the mean of all readings of each setting"),
+            (false, true) => Some("a smooth curve through the readings of each sweep"),
+            (false, false) => None,
+        }
     }
 
     /// Stated noise of an offset, m; where only loads were read or only their noise is stated, that

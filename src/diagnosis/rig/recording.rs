@@ -8,7 +8,7 @@ mod estimate;
 pub mod evidence;
 mod multiples;
 pub mod passing;
-mod place;
+pub mod place;
 mod recurring;
 pub mod resolution;
 mod rezeroed;

@@ -174,6 +174,7 @@ fn measured_load(found: &RigDiagnosis) -> Option<Value> {
     let (diagnosis, newtons) = (&found.diagnosis, |error: f64| error / per_newton);
     Some(json!({
         "um_per_n": per_newton / UM,
+        "displacement_as": found.model.displacements_count_as(),
         "rms_before_n": newtons(rms(&diagnosis.before)),
         "rms_after_n": newtons(rms(&diagnosis.after)),
         "noise_n": newtons(diagnosis.noise),
@@ -184,8 +185,11 @@ fn measured_load(found: &RigDiagnosis) -> Option<Value> {
 fn loads_in_newtons(found: &RigDiagnosis) -> Option<String> {
     let per_newton = found.model.per_newton()?;
     let newtons = |error: f64| significant(error / per_newton, 2);
+    let counts_as = found.model.displacements_count_as().map_or_else(String::new, |what| {
+        format!(" The displacement is taken as {what}, because the loads do not follow each reading of it.")
+    });
     Some(format!(
-        "The displacement was imposed: the measured loads are compared with the model. One newton counts as {} µm, \
+        "The displacement was imposed: the measured loads are compared with the model.{counts_as} One newton counts as {} µm, \
          the largest displacement over the largest load. In newtons: {} rms as it is, {} with the findings; the \
          scatter is {}.",
         significant(per_newton / UM, 3),

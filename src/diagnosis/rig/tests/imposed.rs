@@ -100,6 +100,10 @@ fn a_zero_of_the_display_that_drifts_is_a_drift() {
     let [drift] = &found.diagnosis.findings[..] else { panic!("{:?}", names(&found)) };
     let words = found.model.describe(drift).observed;
     assert!(words.contains("or the zero of dy the other way"), "{words}");
+    // a number that is none of a reading is said
+    let counts_as = |found: RigDiagnosis| found.model.displacements_count_as();
+    assert_eq!(counts_as(found), None);
+    assert!(counts_as(cycles(1, as_they_are)).is_some_and(|words| words.contains("mean")));
 }
 
 /// A rod that relaxes lacks a part of each change until six readings later: one law of two numbers,
